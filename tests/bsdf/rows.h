@@ -1,0 +1,55 @@
+// The table of Bsdfs that every test of the common interface runs over. A new material is a row here.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bsdf/bsdf.h"
+
+namespace lsde::test {
+
+struct BsdfRow {
+    std::string name;
+    Bsdf bsdf;
+};
+
+inline const std::vector<BsdfRow>& bsdfRows() {
+    static const Rgb kTint(0.9F, 0.5F, 0.1F), kWhite(1), kF0(0.04F), kTintedF0(0.08F, 0.04F, 0.02F);
+    static const std::vector<BsdfRow> rows = {
+        {"black", BlackBsdf{}},
+        {"Lambert", DiffuseBsdf{kTint}},
+        {"mirror", MirrorBsdf{}},
+        {"tinted mirror", MirrorBsdf{kTint}},
+        {"glass", DielectricBsdf{1.5F, kWhite}},
+        {"glass from within", DielectricBsdf{1 / 1.5F, kWhite}},
+        {"tinted glass", DielectricBsdf{1.5F, kTint}},
+        {"no interface", DielectricBsdf{1.0F, kWhite}},
+        {"pane", ThinDielectricBsdf{1.5F, kWhite}},
+        {"tinted pane", ThinDielectricBsdf{1.5F, kTint}},
+        {"fine metal", MetalRoughBsdf{kTint, kF0, 1, 1, 0.2F}},
+        {"rough white metal", MetalRoughBsdf{kWhite, kF0, 1, 1, 0.5F}},
+        {"roughest metal", MetalRoughBsdf{kWhite, kF0, 1, 1, 1}},
+        {"smooth metal", MetalRoughBsdf{kTint, kF0, 1, 1, 0}},
+        {"glossy plastic", MetalRoughBsdf{kTint, kF0, 1, 0, 0.3F}},
+        {"rough plastic", MetalRoughBsdf{0.8F * kWhite, kF0, 1, 0, 0.7F}},
+        {"plastic of tinted, weak coat", MetalRoughBsdf{kTint, kTintedF0, 0.5F, 0, 0.4F}},
+        {"half metal", MetalRoughBsdf{kTint, kF0, 1, 0.5F, 0.5F}},
+        {"coat on black", MetalRoughBsdf{Rgb(0), kF0, 1, 0, 0.5F}},
+        {"no coat", MetalRoughBsdf{kTint, kF0, 0, 0, 0.5F}},
+        {"smooth plastic", MetalRoughBsdf{kTint, kF0, 1, 0, 0}},
+        {"smooth half metal", MetalRoughBsdf{kTint, kF0, 1, 0.5F, 0}},
+    };
+    return rows;
+}
+
+inline Vec3 directionAt(float angleDeg, float azimuthDeg) {
+    const float t = angleDeg * kPi / 180, p = azimuthDeg * kPi / 180;
+    return {std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)};
+}
+
+// From above, slanted, near the horizon, and from below.
+inline std::vector<Vec3> bsdfDirections() {
+    return {{0, 0, 1}, directionAt(40, 20), directionAt(75, 200), directionAt(120, 130)};
+}
+
+}  // namespace lsde::test
