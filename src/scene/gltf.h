@@ -1,0 +1,20 @@
+// Loads glTF 2.0 (.gltf, .glb). gltf.cpp is the one file that includes tinygltf; it sees only what gltf_validate
+// passed.
+#pragma once
+
+#include <string>
+
+#include "scene/description.h"
+
+namespace lsde {
+
+struct GltfOptions {
+    std::string scene;          // name or index; empty: the file's default scene, else the first
+    bool allowOutside = false;  // buffers and images outside the scene's folder
+};
+
+// Throws Error "FILE: OBJECT: value, expected ..." for whatever render would refuse. No light or no camera is not an
+// error here.
+SceneDescription loadGltf(const std::filesystem::path& file, const GltfOptions& options = {});
+
+}  // namespace lsde

@@ -1,0 +1,143 @@
+#include "scene/gltf_material.h"
+
+#include <fmt/format.h>
+
+namespace lsde {
+
+namespace {
+
+Rgb toRgb(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
+
+float factor(const JsonObject& object, const char* key, double fallback, Range range = kUnitInterval) {
+    return static_cast<float>(object.number(key, fallback, range));
+}
+
+Rgb colorFactor(const JsonObject& object, const char* key, double fallback, Range range = kUnitInterval) {
+    return toRgb(object.numbers(key, 3, std::vector<double>(3, fallback), range));
+}
+
+// KHR_texture_transform: matrices T R S. With v downwards the rotation has this sign, by the extension's own example
+// (the lower left quadrant turned by 90 degrees) and as viewers have it; its GLSL shows the transpose.
+void readTextureTransform(const JsonObject& transform, TextureRef& ref) {
+    const std::vector<double> offset = transform.numbers("offset", 2, {0, 0});
+    const std::vector<double> scale = transform.numbers("scale", 2, {1, 1});
+    const double rotation = transform.number("rotation", 0);
+    const double c = std::cos(rotation), s = std::sin(rotation);
+    ref.matrix = Vec4(c * scale[0], s * scale[1], -s * scale[0], c * scale[1]);
+    ref.offset = Vec2(offset[0], offset[1]);
+}
+
+TextureRef readTexture(const JsonObject& root, const JsonObject& object, const char* key) {
+    TextureRef ref;
+    const auto use = object.object(key);
+    if (!use) return ref;
+    use->require("index");
+    ref.texture = static_cast<int>(use->reference("index", "texture", root.size("textures")).value());
+    ref.texCoord = static_cast<int>(use->integer("texCoord", 0, 0, 1));
+    if (const auto transform = use->extension("KHR_texture_transform")) {
+        readTextureTransform(*transform, ref);
+        ref.texCoord = static_cast<int>(transform->integer("texCoord", ref.texCoord, 0, 1));
+    }
+    return ref;
+}
+
+void readMetallicRoughness(const JsonObject& root, const JsonObject& pbr, Material& m) {
+    m.baseColor = toRgb(pbr.numbers("baseColorFactor", 4, {1, 1, 1, 1}, kUnitInterval));
+    m.baseColorTexture = readTexture(root, pbr, "baseColorTexture");
+    m.metallic = factor(pbr, "metallicFactor", 1);
+    m.roughness = factor(pbr, "roughnessFactor", 1);
+    m.metallicRoughnessTexture = readTexture(root, pbr, "metallicRoughnessTexture");
+}
+
+void readSpecular(const JsonObject& root, const JsonObject& object, Material& m) {
+    if (const auto ior = object.extension("KHR_materials_ior")) {
+        m.ior = factor(*ior, "ior", 1.5, kAnyNumber);
+        if (m.ior < 1 && m.ior != 0) object.fail(fmt::format("ior {}, expected 0 or >= 1", shown(ior->json()["ior"])));
+    }
+    if (const auto specular = object.extension("KHR_materials_specular")) {
+        m.specular = factor(*specular, "specularFactor", 1);
+        m.specularTexture = readTexture(root, *specular, "specularTexture");
+        m.specularColor = colorFactor(*specular, "specularColorFactor", 1, kNotNegative);
+        m.specularColorTexture = readTexture(root, *specular, "specularColorTexture");
+    }
+}
+
+void readVolume(const JsonObject& root, const JsonObject& object, Material& m) {
+    const auto volume = object.extension("KHR_materials_volume");
+    if (!volume) return;
+    VolumeProperties v;
+    const float thickness = factor(*volume, "thicknessFactor", 0, kNotNegative);
+    if (volume->has("attenuationDistance"))
+        v.attenuationDistance = factor(*volume, "attenuationDistance", 0, kPositive);
+    v.attenuationColor = colorFactor(*volume, "attenuationColor", 1);
+    // Read for its checks alone: the extension asks ray tracers to ignore it.
+    readTexture(root, *volume, "thicknessTexture");
+    if (thickness > 0) m.volume = v;
+}
+
+// What is rendered otherwise than the extension says goes into a warning.
+void readTransmission(const JsonObject& root, const JsonObject& object, Material& m, Warnings& warnings) {
+    if (const auto transmission = object.extension("KHR_materials_transmission")) {
+        m.transmission = factor(*transmission, "transmissionFactor", 0);
+        m.transmissionTexture = readTexture(root, *transmission, "transmissionTexture");
+    }
+    readVolume(root, object, m);
+    if (!(m.transmission > 0)) return;
+    if (m.metallic == 1 && !m.metallicRoughnessTexture) {
+        warnings.add("transmission has no effect on a metal (metallicFactor is 1 unless given)", object.where());
+        m.transmission = 0;
+        return;
+    }
+    if (m.transmission < 1 || m.transmissionTexture)
+        warnings.add("partial transmission is rendered as transmission 1", object.where());
+    if (m.roughness > 0) warnings.add("rough transmission is rendered smooth", object.where());
+}
+
+void readEmission(const JsonObject& root, const JsonObject& object, Material& m) {
+    const Rgb emissive = colorFactor(object, "emissiveFactor", 0);
+    const auto extension = object.extension("KHR_materials_emissive_strength");
+    const float strength = extension ? factor(*extension, "emissiveStrength", 1, kNotNegative) : 1;
+    m.emission = emissive * strength;
+    m.emissiveTexture = readTexture(root, object, "emissiveTexture");
+}
+
+void warnOfIgnored(const JsonObject& object, Warnings& warnings) {
+    const std::string alpha = object.has("alphaMode") ? object.string("alphaMode") : "OPAQUE";
+    if (alpha != "OPAQUE" && alpha != "MASK" && alpha != "BLEND")
+        object.fail(fmt::format("alphaMode {}, expected OPAQUE, MASK or BLEND", shown(alpha)));
+    object.number("alphaCutoff", 0.5, kNotNegative);
+    if (alpha != "OPAQUE") warnings.add(fmt::format("alphaMode {} is rendered opaque", alpha), object.where());
+    if (object.has("normalTexture")) warnings.add("normal textures are not rendered yet", object.where());
+}
+
+GltfMaterial readMaterial(const JsonObject& root, const JsonObject& object, Warnings& warnings) {
+    GltfMaterial out;
+    Material& m = out.material;
+    m.name = object.string("name");
+    m.doubleSided = object.boolean("doubleSided", false);
+    if (const auto pbr = object.object("pbrMetallicRoughness")) readMetallicRoughness(root, *pbr, m);
+    readSpecular(root, object, m);
+    readTransmission(root, object, m, warnings);
+    readEmission(root, object, m);
+    warnOfIgnored(object, warnings);
+    out.priority = readPriority(object);
+    return out;
+}
+
+}  // namespace
+
+std::optional<int> readPriority(const JsonObject& object) {
+    const auto extras = object.extras();
+    if (!extras || !extras->has("priority")) return {};
+    constexpr int64_t kLargest = 1'000'000;
+    return static_cast<int>(extras->integer("priority", 0, -kLargest, kLargest));
+}
+
+std::vector<GltfMaterial> readMaterials(const JsonObject& root, Warnings& warnings) {
+    std::vector<GltfMaterial> out;
+    for (const JsonObject& object : root.objects("materials", "material", true))
+        out.push_back(readMaterial(root, object, warnings));
+    return out;
+}
+
+}  // namespace lsde

@@ -1,0 +1,104 @@
+#include "scene/gltf_placement.h"
+
+#include <fmt/format.h>
+
+#include "scene/gltf_limits.h"
+
+namespace lsde {
+
+namespace {
+
+// A node of the scene that shows a mesh.
+struct NodeMesh {
+    const PlacedNode& placed;
+    JsonObject node;
+    size_t mesh;
+};
+
+std::vector<NodeMesh> meshesOf(const JsonObject& root, const std::vector<PlacedNode>& placed) {
+    const std::vector<JsonObject> nodes = root.objects("nodes", "node");
+    std::vector<NodeMesh> out;
+    for (const PlacedNode& p : placed)
+        if (const auto mesh = nodes[p.index].reference("mesh", "mesh", root.size("meshes")))
+            out.push_back({p, nodes[p.index], *mesh});
+    return out;
+}
+
+// Nodes cannot share children, but many may show one mesh, and one mesh may be large.
+void checkSceneSize(const JsonObject& root, const std::vector<NodeMesh>& meshes, const GeometryLoader& geometry) {
+    uint64_t primitives = 0, triangles = 0;
+    for (const NodeMesh& m : meshes) {
+        primitives += geometry.primitives(m.mesh);
+        triangles += geometry.triangles(m.mesh);
+        if (primitives > kMaxPrimitives)
+            root.fail(fmt::format("the scene's nodes show more than {} primitives", kMaxPrimitives));
+        if (triangles > kMaxTriangles)
+            root.fail(fmt::format("the scene's nodes show more than {} triangles", kMaxTriangles));
+    }
+}
+
+void checkTexCoords(const JsonObject& root, const Material& material, const PrimitiveData& data) {
+    for (const TextureRef* ref : material.textures())
+        if (*ref && data.texCoords[ref->texCoord].empty())
+            root.fail(fmt::format("{}: no TEXCOORD_{}, which its material {} uses", data.where, ref->texCoord,
+                                  shown(material.name)));
+}
+
+class MeshPlacer {
+  public:
+    MeshPlacer(const JsonObject& root, const std::vector<GltfMaterial>& materials, SceneDescription& scene,
+               Warnings& warnings)
+        : root_(root), materials_(materials), scene_(scene), warnings_(warnings) {}
+
+    void place(const NodeMesh& nodeMesh, const std::vector<LoadedPrimitive>& primitives) {
+        const auto& [placed, node, meshIndex] = nodeMesh;
+        const CausticSwitches switches = readSwitches(node, warnings_);
+        const std::optional<int> priority = readPriority(node);
+        const std::string meshName = root_.json()["meshes"][meshIndex].value("name", "");
+        const glm::dmat3 linear(placed.world);
+        if (glm::determinant(linear) == 0)
+            warnings_.add("its matrix is singular: its mesh is flat or empty", node.where());
+        for (const LoadedPrimitive& primitive : primitives) {
+            const uint32_t material = materialOf(primitive.material);
+            checkTexCoords(root_, scene_.materials[material], primitive.data);
+            std::optional<Mesh> mesh = placePrimitive(primitive.data, placed.world, warnings_);
+            if (!mesh) continue;
+            mesh->object = objectName(node, meshName, "node", placed.index);
+            mesh->material = material;
+            mesh->node = static_cast<uint32_t>(placed.index);
+            mesh->switches = switches;
+            const std::optional<int> p = priority || primitive.material < 0
+                                             ? priority
+                                             : materials_[static_cast<size_t>(primitive.material)].priority;
+            mesh->hasPriority = p.has_value();
+            mesh->priority = p.value_or(0);
+            scene_.meshes.push_back(std::move(*mesh));
+        }
+    }
+
+  private:
+    // The default material comes after the file's own, once a primitive needs it.
+    uint32_t materialOf(int index) {
+        if (index >= 0) return static_cast<uint32_t>(index);
+        if (scene_.materials.size() == materials_.size()) scene_.materials.push_back({.name = "default"});
+        return static_cast<uint32_t>(materials_.size());
+    }
+
+    const JsonObject& root_;
+    const std::vector<GltfMaterial>& materials_;
+    SceneDescription& scene_;
+    Warnings& warnings_;
+};
+
+}  // namespace
+
+void placeMeshes(const JsonObject& root, const std::vector<PlacedNode>& placed,
+                 const std::vector<GltfMaterial>& materials, GeometryLoader& geometry, SceneDescription& scene,
+                 Warnings& warnings) {
+    const std::vector<NodeMesh> meshes = meshesOf(root, placed);
+    checkSceneSize(root, meshes, geometry);
+    MeshPlacer placer(root, materials, scene, warnings);
+    for (const NodeMesh& m : meshes) placer.place(m, geometry.mesh(m.mesh));
+}
+
+}  // namespace lsde

@@ -1,0 +1,52 @@
+// Materials as glTF states them. Scene turns one into a Bsdf value at each hit.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "base/math.h"
+#include "scene/texture.h"
+
+namespace lsde {
+
+// KHR_materials_volume with thicknessFactor > 0: a solid.
+struct VolumeProperties {
+    Rgb attenuationColor{1};
+    float attenuationDistance = kInfinity;  // m
+};
+
+struct Material {
+    std::string name;
+    bool doubleSided = false;
+
+    Rgb baseColor{1};  // linear
+    TextureRef baseColorTexture;
+    float metallic = 1;
+    float roughness = 1;                  // glTF's; alpha = roughness^2
+    TextureRef metallicRoughnessTexture;  // g: roughness, b: metallic; linear
+
+    float ior = 1.5F;            // KHR_materials_ior; 0 means F0 = 1 (the extension's special case)
+    float specular = 1;          // KHR_materials_specular.specularFactor
+    TextureRef specularTexture;  // alpha
+    Rgb specularColor{1};
+    TextureRef specularColorTexture;
+
+    float transmission = 0;          // KHR_materials_transmission.transmissionFactor
+    TextureRef transmissionTexture;  // r
+    std::optional<VolumeProperties> volume;
+
+    Rgb emission{0};             // emissiveFactor x emissiveStrength, W/(m2 sr)
+    TextureRef emissiveTexture;  // sRGB
+
+    // All of its textures, used or not.
+    std::array<const TextureRef*, 6> textures() const {
+        return {&baseColorTexture,     &metallicRoughnessTexture, &specularTexture,
+                &specularColorTexture, &transmissionTexture,      &emissiveTexture};
+    }
+    bool emissive() const { return maxComponent(emission) > 0; }
+    bool isSolid() const { return transmission > 0 && volume.has_value(); }
+    bool isThinWall() const { return transmission > 0 && !volume.has_value(); }
+};
+
+}  // namespace lsde

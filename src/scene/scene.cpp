@@ -1,0 +1,218 @@
+#include "scene/scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "base/error.h"
+#include "path/event.h"
+
+namespace lsde {
+
+namespace {
+
+float meshArea(const Mesh& mesh) {
+    double area = 0;
+    for (const Triangle& t : mesh.triangles)
+        area += 0.5 * glm::length(glm::cross(mesh.positions[t[1]] - mesh.positions[t[0]],
+                                             mesh.positions[t[2]] - mesh.positions[t[0]]));
+    return static_cast<float>(area);
+}
+
+// Whether light leaves this material by an event of class Bend or Glossy (path/event.h).
+bool hasNarrowLobe(const Material& m) {
+    if (m.transmission > 0) return true;
+    const bool glossy = m.metallic > 0 || m.metallicRoughnessTexture || m.specular > 0;
+    const bool narrow = m.roughness < kGlossyRoughness || m.metallicRoughnessTexture;
+    return glossy && narrow;
+}
+
+constexpr size_t kMaxCasters = 16;
+
+}  // namespace
+
+Scene::Scene(SceneDescription description)
+    : description_(std::move(description)), accel_(description_.meshes), hash_(hashDescription(description_)) {
+    std::map<std::string, uint32_t> objectIndex;
+    for (const Mesh& mesh : description_.meshes) {
+        MeshInfo info;
+        const auto [at, added] = objectIndex.try_emplace(mesh.object, static_cast<uint32_t>(objects_.size()));
+        if (added) objects_.push_back(mesh.object);
+        info.object = at->second;
+        info.area = meshArea(mesh);
+        info.receiver = mesh.switches.receives;
+        bounds_.grow(mesh.bounds());
+        const Material& material = description_.materials[mesh.material];
+        hasThinWalls_ |= material.isThinWall();
+        info.caster = mesh.switches.casts && hasNarrowLobe(material);
+        meshes_.push_back(info);
+    }
+    if (!bounds_.empty()) {
+        boundingSphere_.centre = bounds_.centre();
+        for (const Mesh& mesh : description_.meshes)
+            for (const Vec3 p : mesh.positions)
+                boundingSphere_.radius = std::max(boundingSphere_.radius, glm::length(p - boundingSphere_.centre));
+    }
+    buildMedia();
+    buildLights();
+    buildCasters();
+}
+
+void Scene::buildLights() {
+    for (size_t i = 0; i < meshes_.size(); ++i) {
+        const Mesh& mesh = description_.meshes[i];
+        const Material& material = description_.materials[mesh.material];
+        if (!material.emissive()) continue;
+        AreaLight area(mesh, material, description_.textures);
+        if (area.triangles.empty()) continue;
+        meshes_[i].light = static_cast<int>(lights_.size());
+        lights_.push_back({mesh.object, std::move(area)});
+    }
+    for (const PunctualLight& p : description_.lights) {
+        if (isBlack(p.intensity)) continue;
+        if (p.kind == PunctualKind::Directional) {
+            lights_.push_back({p.name, DirectionalLight{p.direction, p.intensity, boundingSphere_}});
+            continue;
+        }
+        PointLight light{p.position, p.intensity};
+        if (p.kind == PunctualKind::Spot) {
+            light.axis = p.direction;
+            light.oneMinusCosInner = 2 * square(std::sin(0.5F * p.innerConeAngle));
+            light.oneMinusCosOuter = 2 * square(std::sin(0.5F * p.outerConeAngle));
+        }
+        lights_.push_back({p.name, light});
+    }
+    if (lights_.size() > 65535)
+        throw Error(fmt::format("{}: {} lights, expected at most 65535", description_.file.string(), lights_.size()));
+}
+
+void Scene::buildCasters() {
+    std::vector<Sphere> spheres;
+    for (size_t i = 0; i < meshes_.size(); ++i)
+        if (meshes_[i].caster && description_.meshes[i].switches.aim)
+            spheres.push_back(boundingSphereOf(description_.meshes[i]));
+    casters_ = groupCasters(std::move(spheres), kMaxCasters);
+}
+
+Surface Scene::surface(const Hit& hit) const {
+    const Mesh& mesh = description_.meshes[hit.mesh];
+    const Triangle& t = mesh.triangles[hit.triangle];
+    const Vec3 a = mesh.positions[t[0]], b = mesh.positions[t[1]], c = mesh.positions[t[2]];
+    Surface s;
+    s.mesh = hit.mesh;
+    s.triangle = hit.triangle;
+    s.u = hit.u;
+    s.v = hit.v;
+    // By barycentric weights: closer to the triangle than the point at distance t along the ray.
+    s.position = (1 - hit.u - hit.v) * a + hit.u * b + hit.v * c;
+    s.ng = glm::normalize(glm::cross(b - a, c - a));
+    s.ns = s.ng;
+    if (!mesh.normals.empty()) {
+        const Vec3 n =
+            (1 - hit.u - hit.v) * mesh.normals[t[0]] + hit.u * mesh.normals[t[1]] + hit.v * mesh.normals[t[2]];
+        const float length = glm::length(n);
+        // Normals that cancel out, or that point behind the face, say nothing of this side: the face's own holds.
+        if (length > 0 && glm::dot(n, s.ng) > 0) s.ns = n / length;
+    }
+    s.epsilon = surfaceEpsilon(largestCoordinates(a, b, c), hit.t);
+    return s;
+}
+
+Vec2 Scene::texCoord(const Surface& s, int set) const {
+    const Mesh& mesh = description_.meshes[s.mesh];
+    const auto& uvs = mesh.texCoords[set];
+    if (uvs.empty()) return Vec2(0);
+    const Triangle& t = mesh.triangles[s.triangle];
+    return (1 - s.u - s.v) * uvs[t[0]] + s.u * uvs[t[1]] + s.v * uvs[t[2]];
+}
+
+Rgb Scene::vertexColor(const Surface& s) const {
+    const Mesh& mesh = description_.meshes[s.mesh];
+    if (mesh.colors.empty()) return Rgb(1);
+    const Triangle& t = mesh.triangles[s.triangle];
+    return Rgb((1 - s.u - s.v) * mesh.colors[t[0]] + s.u * mesh.colors[t[1]] + s.v * mesh.colors[t[2]]);
+}
+
+Vec4 Scene::sample(const Surface& s, const TextureRef& ref, bool srgb) const {
+    return description_.textures[static_cast<size_t>(ref.texture)].sample(ref.transform(texCoord(s, ref.texCoord)),
+                                                                          srgb);
+}
+
+Bsdf Scene::bsdf(const Surface& s, float iorFront, float iorBack) const {
+    const Material& m = material(s);
+    Rgb baseColor = m.baseColor * vertexColor(s);
+    if (m.baseColorTexture) baseColor *= Vec3(sample(s, m.baseColorTexture, true));
+    if (m.isSolid()) return DielectricBsdf{iorBack / iorFront, baseColor};
+    if (m.isThinWall()) return ThinDielectricBsdf{m.ior, baseColor};
+
+    MetalRoughBsdf b;
+    b.baseColor = baseColor;
+    b.metallic = m.metallic;
+    b.roughness = m.roughness;
+    if (m.metallicRoughnessTexture) {
+        const Vec4 texel = sample(s, m.metallicRoughnessTexture, false);
+        b.roughness *= texel.y;
+        b.metallic *= texel.z;
+    }
+    b.specular = m.specular;
+    if (m.specularTexture) b.specular *= sample(s, m.specularTexture, false).w;
+    if (b.metallic == 0 && b.specular == 0) {
+        if (isBlack(baseColor)) return BlackBsdf{};
+        return DiffuseBsdf{baseColor};
+    }
+    if (b.metallic == 1 && b.roughness == 0) return MirrorBsdf{baseColor};
+    Rgb specularColor = m.specularColor;
+    if (m.specularColorTexture) specularColor *= Vec3(sample(s, m.specularColorTexture, true));
+    // ior 0 stands for an infinite one (KHR_materials_ior): F0 = 1.
+    const float f0 = m.ior == 0 ? 1 : square((m.ior - 1) / (m.ior + 1));
+    b.dielectricF0 = glm::min(f0 * specularColor, Rgb(1));
+    return b;
+}
+
+Rgb Scene::emission(const Surface& s, Vec3 leaving) const {
+    const int light = meshes_[s.mesh].light;
+    if (light < 0) return Rgb(0);
+    const auto& area = std::get<AreaLight>(lights_[static_cast<size_t>(light)].shape);
+    if (!area.twoSided && glm::dot(s.ng, leaving) <= 0) return Rgb(0);
+    return area.radiance(s.triangle, s.u, s.v);
+}
+
+std::vector<bool> Scene::lightSelection(const std::vector<std::string>& names) const {
+    std::vector<bool> selected(lights_.size(), names.empty());
+    for (const std::string& name : names) {
+        bool found = false;
+        for (size_t i = 0; i < lights_.size(); ++i)
+            if (lights_[i].name == name) selected[i] = found = true;
+        if (found) continue;
+        std::string there;
+        for (const Light& light : lights_) there += (there.empty() ? "" : ", ") + light.name;
+        throw Error(fmt::format("{}: light \"{}\": does not exist, expected one of: {}", description_.file.string(),
+                                name, there.empty() ? "(the scene has no lights)" : there));
+    }
+    return selected;
+}
+
+CameraDescription Scene::camera(const std::string& name) const {
+    if (name.empty() && !description_.cameras.empty()) return description_.cameras.front();
+    std::string there;
+    for (const CameraDescription& camera : description_.cameras) {
+        if (camera.name == name) return camera;
+        there += (there.empty() ? "" : ", ") + camera.name;
+    }
+    if (!name.empty())
+        throw Error(fmt::format("{}: camera \"{}\": does not exist, expected one of: {}", description_.file.string(),
+                                name, there.empty() ? "(the scene has no cameras)" : there));
+    // From the front, a little above, far enough to see all of it.
+    CameraDescription c;
+    c.name = "framing";
+    c.yfov = 0.7F;
+    c.aspectRatio = 4.0F / 3;
+    c.back = glm::normalize(Vec3(0.25F, 0.45F, 1));
+    c.right = glm::normalize(glm::cross(Vec3(0, 1, 0), c.back));
+    c.up = glm::cross(c.back, c.right);
+    c.position = boundingSphere_.centre + c.back * (std::max(boundingSphere_.radius, 1e-6F) / std::sin(0.5F * c.yfov));
+    return c;
+}
+
+}  // namespace lsde

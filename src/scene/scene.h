@@ -1,0 +1,105 @@
+// The scene: immutable after construction, asked by every pass.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/ray.h"
+#include "base/surface_point.h"
+#include "bsdf/bsdf.h"
+#include "scene/accel.h"
+#include "scene/camera.h"
+#include "scene/casters.h"
+#include "scene/description.h"
+#include "scene/light.h"
+#include "scene/media_stack.h"
+
+namespace lsde {
+
+// A point of a surface that a ray has hit.
+struct Surface {
+    Vec3 position{0};
+    Vec3 ng{0};  // geometric normal, unit, front side
+    Vec3 ns{0};  // shading normal, unit, on ng's side
+    uint32_t mesh = 0;
+    uint32_t triangle = 0;
+    float u = 0, v = 0;  // barycentric
+    float epsilon = 0;   // m: offset for rays that leave
+};
+
+// A mesh as transport sees it.
+struct MeshInfo {
+    MediumId medium = kOutside;  // of the solid that it bounds; kOutside: it bounds none
+    int light = -1;              // index of its area light
+    uint32_t object = 0;         // index into Scene::objects()
+    float area = 0;              // m2
+    bool caster = false;         // has a lobe of class Bend or Glossy, and may cast
+    bool receiver = true;        // photons are gathered on it
+    bool mayTouch = false;       // a solid that something may lie against: coincident surfaces are looked for
+};
+
+class Scene {
+  public:
+    explicit Scene(SceneDescription description);
+    Scene(const Scene&) = delete;
+    Scene& operator=(const Scene&) = delete;
+
+    const SceneDescription& description() const { return description_; }
+    const std::string& hash() const { return hash_; }  // geometry, materials, lights, textures; not cameras
+    const std::vector<Light>& lights() const { return lights_; }
+    const std::vector<Medium>& media() const { return media_; }
+    const std::vector<MeshInfo>& meshes() const { return meshes_; }
+    const std::vector<std::string>& objects() const { return objects_; }
+    const std::vector<Caster>& casters() const { return casters_; }
+    const Sphere& boundingSphere() const { return boundingSphere_; }
+    bool hasThinWalls() const { return hasThinWalls_; }
+    const Accel& accel() const { return accel_; }
+
+    Surface surface(const Hit& hit) const;
+    const Material& material(const Surface& s) const {
+        return description_.materials[description_.meshes[s.mesh].material];
+    }
+    // Front and back: refractive indices on either side of the interface, where the surface bounds a solid.
+    Bsdf bsdf(const Surface& s, float iorFront, float iorBack) const;
+    // Radiance emitted into direction `leaving` (unit, away from the surface).
+    Rgb emission(const Surface& s, Vec3 leaving) const;
+    // The solids around a point, found by the facing of what a ray meets; for paths that start there.
+    MediaStack mediaAt(Vec3 p) const;
+    // What lies against a solid's surface: hits of other solids and of opaque meshes within `distance` (m) of its
+    // point.
+    void coincidentSurfaces(const Surface& s, float distance, std::vector<Hit>& out) const;
+    // Light indices by name; throws Error naming those there are.
+    std::vector<bool> lightSelection(const std::vector<std::string>& names) const;
+    // The named camera, the first, or one that frames the scene.
+    CameraDescription camera(const std::string& name) const;
+
+  private:
+    void buildMedia();
+    void findTouching();
+    void buildLights();
+    void buildCasters();
+    void checkNesting() const;
+    std::vector<MediumId> solidsAround(Vec3 p) const;  // innermost (left first) to outermost
+    Vec2 texCoord(const Surface& s, int set) const;
+    Rgb vertexColor(const Surface& s) const;
+    Vec4 sample(const Surface& s, const TextureRef& ref, bool srgb) const;
+
+    SceneDescription description_;
+    Accel accel_;
+    std::string hash_;
+    std::vector<MeshInfo> meshes_;
+    std::vector<std::string> objects_;
+    std::vector<Medium> media_;
+    std::vector<Light> lights_;
+    std::vector<Caster> casters_;
+    Sphere boundingSphere_;
+    Bounds bounds_;
+    bool hasThinWalls_ = false;
+};
+
+// XXH3-128 of all that a map depends on, as 32 hexadecimal digits.
+std::string hashDescription(const SceneDescription& description);
+
+}  // namespace lsde

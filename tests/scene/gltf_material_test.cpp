@@ -1,0 +1,149 @@
+// Materials as the file states them.
+#include <doctest/doctest.h>
+
+#include "scene/gltf_file.h"
+
+using namespace lsde;
+using namespace lsde::test;
+
+namespace {
+
+Json withExtension(const std::string& name, Json properties) {
+    return {{"name", "water"}, {"extensions", {{"KHR_materials_" + name, std::move(properties)}}}};
+}
+
+Material materialOf(const Json& json) { return load(triangleFileWith(json)).materials[0]; }
+
+void checkMaterialRefusals(const std::vector<std::pair<Json, const char*>>& rows) {
+    for (const auto& [material, message] : rows) {
+        CAPTURE(material.dump());
+        const std::string said = refusalOf(triangleFileWith(material));
+        CHECK_MESSAGE(contains(said, message), said);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("a material without properties has the specification's defaults, and so has a primitive without material") {
+    const SceneDescription none = load(triangleFile());
+    REQUIRE(none.materials.size() == 1);
+    CHECK(none.materials[0].name == "default");
+    for (const Material& m : {none.materials[0], materialOf(Json::object())}) {
+        CHECK(m.baseColor == Rgb(1));
+        CHECK(m.metallic == 1);
+        CHECK(m.roughness == 1);
+        CHECK(m.ior == 1.5F);
+        CHECK(m.specular == 1);
+        CHECK(m.transmission == 0);
+        CHECK(!m.volume);
+        CHECK(!m.emissive());
+        CHECK(!m.doubleSided);
+    }
+    GltfFile both = triangleFileWith({{"name", "own"}});
+    both.add("meshes", triangleFile()["/meshes/0"]);
+    both.node({{"mesh", 1}});
+    const SceneDescription scene = load(both);
+    REQUIRE(scene.materials.size() == 2);
+    CHECK(scene.meshes[0].material == 0);
+    CHECK(scene.meshes[1].material == 1);
+}
+
+TEST_CASE("every property of a material is read") {
+    const Material m =
+        materialOf({{"name", "all"},
+                    {"doubleSided", true},
+                    {"emissiveFactor", {0.5, 0.25, 1}},
+                    {"pbrMetallicRoughness",
+                     {{"baseColorFactor", {0.1, 0.2, 0.3, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 0}}},
+                    {"extensions",
+                     {{"KHR_materials_emissive_strength", {{"emissiveStrength", 8}}},
+                      {"KHR_materials_ior", {{"ior", 1.33}}},
+                      {"KHR_materials_specular", {{"specularFactor", 0.5}, {"specularColorFactor", {2, 1, 0}}}},
+                      {"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+                      {"KHR_materials_volume",
+                       {{"thicknessFactor", 0.1}, {"attenuationDistance", 3}, {"attenuationColor", {0.5, 1, 0}}}}}}});
+    CHECK(m.name == "all");
+    CHECK(m.doubleSided);
+    CHECK(m.emission == Rgb(4, 2, 8));
+    CHECK(m.baseColor == Rgb(0.1F, 0.2F, 0.3F));
+    CHECK(m.metallic == 0);
+    CHECK(m.roughness == 0);
+    CHECK(m.ior == 1.33F);
+    CHECK(m.specular == 0.5F);
+    CHECK(m.specularColor == Rgb(2, 1, 0));
+    CHECK(m.transmission == 1);
+    REQUIRE(m.volume);
+    CHECK(m.volume->attenuationDistance == 3);
+    CHECK(m.volume->attenuationColor == Rgb(0.5F, 1, 0));
+    CHECK(m.isSolid());
+}
+
+TEST_CASE("thickness tells a solid from a thin wall, and transmission either from an opaque body") {
+    const auto with = [](double transmission, double thickness, double metallic) {
+        Json json = withExtension("volume", {{"thicknessFactor", thickness}});
+        json["extensions"]["KHR_materials_transmission"] = {{"transmissionFactor", transmission}};
+        json["pbrMetallicRoughness"] = {{"metallicFactor", metallic}, {"roughnessFactor", 0}};
+        return materialOf(json);
+    };
+    CHECK(with(1, 1, 0).isSolid());
+    CHECK(with(1, 0, 0).isThinWall());
+    CHECK(!with(0, 1, 0).isSolid());
+    CHECK(!with(0, 1, 0).isThinWall());
+    // A metal lets nothing through.
+    CHECK(!with(1, 1, 1).isSolid());
+}
+
+TEST_CASE("a property outside its range is refused by material, property, value and range") {
+    const auto pbr = [](const char* key, const Json& value) {
+        return Json{{"name", "water"}, {"pbrMetallicRoughness", {{key, value}}}};
+    };
+    checkMaterialRefusals({
+        {withExtension("ior", {{"ior", 0.2}}), "material \"water\": ior 0.2, expected 0 or >= 1"},
+        {withExtension("ior", {{"ior", -1}}), "material \"water\": ior -1, expected 0 or >= 1"},
+        {withExtension("ior", {{"ior", "glass"}}), "material \"water\": ior \"glass\", expected a number"},
+        {withExtension("volume", {{"attenuationDistance", 0}}),
+         "material \"water\": attenuationDistance 0, expected a number > 0"},
+        {withExtension("volume", {{"thicknessFactor", -1}}), "thicknessFactor -1, expected a number >= 0"},
+        {withExtension("volume", {{"attenuationColor", {0.5, 0.5, 1.5}}}),
+         "attenuationColor[2] 1.5, expected a number in [0, 1]"},
+        {withExtension("emissive_strength", {{"emissiveStrength", -2}}), "emissiveStrength -2, expected a number >= 0"},
+        {withExtension("emissive_strength", {{"emissiveStrength", 1e200}}),
+         "emissiveStrength 1e+200, expected a number >= 0"},
+        {withExtension("specular", {{"specularFactor", 1.01}}), "specularFactor 1.01, expected a number in [0, 1]"},
+        {withExtension("specular", {{"specularColorFactor", {1, -1, 1}}}),
+         "specularColorFactor[1] -1, expected a number >= 0"},
+        {withExtension("transmission", {{"transmissionFactor", 2}}),
+         "transmissionFactor 2, expected a number in [0, 1]"},
+        {pbr("metallicFactor", -0.1),
+         "material \"water\" pbrMetallicRoughness: metallicFactor -0.1, expected a number in [0, 1]"},
+        {pbr("roughnessFactor", 2), "roughnessFactor 2, expected a number in [0, 1]"},
+        {pbr("baseColorFactor", {1, 1, 1}), "baseColorFactor has 3 numbers, expected 4"},
+        {pbr("baseColorFactor", {1, 1, 1, 2}), "baseColorFactor[3] 2, expected a number in [0, 1]"},
+        {{{"emissiveFactor", {0, 0, 2}}}, "material 0: emissiveFactor[2] 2, expected a number in [0, 1]"},
+        {{{"alphaMode", "GLASS"}}, "alphaMode \"GLASS\", expected OPAQUE, MASK or BLEND"},
+    });
+    CHECK(materialOf(withExtension("ior", {{"ior", 0}})).ior == 0);
+}
+
+TEST_CASE("what is rendered otherwise than the file says gets one warning, with its count") {
+    const auto warned = [](const Json& material, const char* text) {
+        return warnsOnce(load(triangleFileWith(material)), text);
+    };
+    Json rough = withExtension("transmission", {{"transmissionFactor", 1}});
+    rough["pbrMetallicRoughness"] = {{"metallicFactor", 0}, {"roughnessFactor", 0.5}};
+    CHECK(warned(rough, "material \"water\": rough transmission is rendered smooth"));
+    rough["extensions"]["KHR_materials_transmission"]["transmissionFactor"] = 0.5;
+    CHECK(warned(rough, "partial transmission is rendered as transmission 1"));
+    CHECK(warned(withExtension("transmission", {{"transmissionFactor", 1}}), "transmission has no effect on a metal"));
+    CHECK(warned({{"alphaMode", "BLEND"}}, "alphaMode BLEND is rendered opaque"));
+    GltfFile file = triangleFile();
+    file.json["extensionsUsed"] = {"KHR_materials_unlit", "KHR_materials_sheen", "KHR_materials_volume"};
+    file.json["materials"] = {{{"alphaMode", "MASK"}}, {{"alphaMode", "MASK"}}, {{"alphaMode", "MASK"}}};
+    file.json["animations"] = {Json::object()};
+    const SceneDescription scene = load(file);
+    CHECK(scene.warnings.size() == 4);
+    CHECK(warnsOnce(scene, "scene.gltf: extension \"KHR_materials_unlit\" is ignored"));
+    CHECK(warnsOnce(scene, "extension \"KHR_materials_sheen\" is ignored"));
+    CHECK(warnsOnce(scene, "material 0: alphaMode MASK is rendered opaque (3 in all)"));
+    CHECK(warnsOnce(scene, "animations are not rendered"));
+}
