@@ -1,0 +1,90 @@
+// Density estimates: which photons count around a point of a surface, in what radius, and with what weight.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/surface_point.h"
+#include "photon/index.h"
+#include "photon/kernel.h"
+
+namespace lsde {
+
+struct DensityQuery {
+    SurfacePoint point;
+    Vec3 sideNormal{0};          // the point's ng, on the side from which the light must have come
+    uint16_t medium = 0;         // in which the photons must have landed
+    uint16_t requiredFlags = 0;  // PhotonFlag; all of them
+    uint32_t minCount = 0;       // photons that the radius grows to hold; not 1, of which no estimate has a mean
+    float minRadius = 0, maxRadius = 0;  // m, finite; equal: fixed
+};
+
+struct GatheredDisc {
+    float radius = 0;       // m
+    uint32_t accepted = 0;  // photons in it that count
+};
+
+// Memory that queries use again and again; one for each thread.
+struct DensityScratch {
+    struct Candidate {
+        uint32_t index;
+        float distanceSquared;
+        float entrySquared;  // of the smallest radius at which this photon counts
+    };
+    NeighbourList found;
+    ScratchList<Candidate> accepted;  // in the order found
+    ScratchList<float> entries;
+};
+
+// scratch.found -> scratch.accepted: the photons that count at the query's point in a disc of the given radius (m).
+//
+// Left out are those of another medium, without the flags, on a surface turned away by more than 45 degrees (so the
+// other side of a sheet too), or lit from the other side; and those beyond the plane's thickness, a share of the
+// radius: then photons on a step or a ledge below never count, however small the radius. They enter when the radius
+// grows.
+void acceptPhotons(const PhotonTreeView& tree, const DensityQuery& query, float radius, DensityScratch& scratch);
+
+// Square of the smallest radius that holds `count` of the accepted (the last one on its rim), all closer than `radius`.
+float radiusSquaredHolding(uint32_t count, float radius, DensityScratch& scratch);
+
+// Calls take(index, weight) for each photon that counts in the disc around the query's point: the sum of
+// weight * power estimates the power that lands there per area (W/m2, times the paths emitted).
+//
+// The radius is max(minRadius, min(maxRadius, distance to the photon number minCount)). Its estimate of a uniform
+// density has no bias, in the least radius, in a grown one, and in any mixture of them. Let the disc shrink from
+// maxRadius until it is the one chosen: whether to stop is known from what it holds and what it has passed, so it is a
+// stopping time, and photons per area in a shrinking disc of a Poisson process are a martingale. At the time of
+// stopping the photons inside are uniform, and the one on the rim weighs 0 with this kernel: the usual k / (k - 1) does
+// not arise.
+//
+// Distances are chords, not their projections to the plane: the area of a sphere within a chord r is pi r^2 exactly.
+template <PhotonIndex Index, typename Take>
+GatheredDisc gatherPhotons(const Index& index, const DensityQuery& query, DensityScratch& scratch, Take&& take) {
+    const float least = query.minRadius, most = std::max(query.minRadius, query.maxRadius);
+    float radius = least;
+    if (query.minCount > 0 && least < most)
+        radius = std::clamp(guessRadius(index.tree(), query.point.position, query.minCount), least, most);
+    for (;;) {
+        index.within(query.point.position, radius, scratch.found);
+        acceptPhotons(index.tree(), query, radius, scratch);
+        if (scratch.accepted.size() >= query.minCount || !(radius < most)) break;
+        radius = std::min(most, grownRadius(radius, query.minCount, scratch.accepted.size()));
+    }
+    float radiusSquared = radius * radius;
+    if (radius > least && scratch.accepted.size() >= query.minCount) {
+        radiusSquared = std::max(least * least, radiusSquaredHolding(query.minCount, radius, scratch));
+        radius = std::sqrt(radiusSquared);
+    }
+    GatheredDisc disc{radius, 0};
+    for (const DensityScratch::Candidate& c : scratch.accepted) {
+        if (!(c.entrySquared < radiusSquared)) continue;
+        ++disc.accepted;
+        take(c.index, epanechnikov(c.distanceSquared, radiusSquared));
+    }
+    return disc;
+}
+
+// To the k-th photon of any kind, in m; maxRadius if there are fewer within it.
+float distanceToKth(const AnyIndex& index, Vec3 position, uint32_t k, float maxRadius, DensityScratch& scratch);
+
+}  // namespace lsde

@@ -1,0 +1,128 @@
+#include "photon/kd_index.h"
+
+#include <cmath>
+
+#include "photon/kd_lanes.h"
+
+namespace lsde {
+
+namespace {
+
+constexpr uint64_t divideUp(uint64_t a, uint64_t b) { return (a + b - 1) / b; }
+
+// Photons near the query are as dense as in the nearest block only roughly, and a radius that falls short costs a
+// second search: on uniform photons this surplus makes that rare.
+constexpr float kSurplus = 1.25F;
+
+// Radii below it have squares that are zero in float, or nearly.
+constexpr float kLeastRadius = 1e-18F;  // m
+
+// Nodes are taken in runs of this many, so that a level's list of children has a size known beforehand.
+constexpr size_t kRun = 16;
+// Blocks looked ahead of the one at work: about the time that memory takes.
+constexpr size_t kAhead = 6;
+
+// All photons in a sphere, level by level: first all nodes of a level that it touches, then all of the next. Unlike a
+// walk to one leaf after the other, this asks memory for many nodes at once, and branches little.
+class SphereSearch {
+  public:
+    SphereSearch(const PhotonTreeView& tree, const KdShape& shape, const lanes::Sphere8& sphere, NeighbourList& out)
+        : tree_(tree), shape_(shape), sphere_(sphere), out_(out) {}
+
+    void descend(size_t level, std::span<const uint32_t> nodes) {
+        const KdNode* const levelNodes = tree_.nodes.data() + shape_.first[level];
+        std::array<uint32_t, kNodeWidth * kRun> children;
+        for (size_t begin = 0; begin < nodes.size(); begin += kRun) {
+            uint32_t* end = children.data();
+            for (const uint32_t node : nodes.subspan(begin, std::min(kRun, nodes.size() - begin))) {
+                const uint32_t touched = lanes::below(lanes::distanceToBoxes(levelNodes[node], sphere_), sphere_);
+                end = lanes::append(end, kNodeWidth * node, touched);
+            }
+            const std::span<const uint32_t> list(children.data(), end);
+            if (level == 0) {
+                appendPhotons(list);
+            } else {
+                const KdNode* const below = tree_.nodes.data() + shape_.first[level - 1];
+                for (const uint32_t node : list.first(std::min(kRun, list.size()))) lanes::prefetch(below[node]);
+                descend(level - 1, list);
+            }
+        }
+    }
+
+  private:
+    void appendPhotons(std::span<const uint32_t> blocks) {
+        for (const uint32_t b : blocks.first(std::min(kAhead, blocks.size()))) lanes::prefetch(tree_.blocks[b]);
+        Neighbour* const begin = out_.room(kBlockSize * blocks.size());
+        Neighbour* end = begin;
+        for (size_t i = 0; i < blocks.size(); ++i) {
+            if (i + kAhead < blocks.size()) lanes::prefetch(tree_.blocks[blocks[i + kAhead]]);
+            for (const uint32_t first : {0U, kBlockSize / 2}) {
+                const __m256 distance = lanes::distanceToPhotons(tree_.blocks[blocks[i]], first, sphere_);
+                end = lanes::append(end, kBlockSize * blocks[i] + first, distance, lanes::below(distance, sphere_));
+            }
+        }
+        out_.resizeWithin(out_.size() + static_cast<size_t>(end - begin));
+    }
+
+    const PhotonTreeView& tree_;
+    const KdShape& shape_;
+    const lanes::Sphere8& sphere_;
+    NeighbourList& out_;
+};
+
+}  // namespace
+
+KdShape::KdShape(uint64_t photons) : blocks(divideUp(photons, kBlockSize)) {
+    for (uint64_t below = blocks; below > 1 || (below == 1 && levels == 0); ++levels)
+        size[static_cast<size_t>(levels)] = below = divideUp(below, kNodeWidth);
+    for (auto level = static_cast<size_t>(levels); level-- > 0; nodes += size[level]) first[level] = nodes;
+}
+
+PhotonTreeView view(const PhotonTree& tree) { return {tree.count, tree.bounds, tree.blocks, tree.nodes, tree.payload}; }
+
+void KdIndex::within(Vec3 centre, float radius, NeighbourList& out) const {
+    out.clear();
+    // Against a coordinate that is not finite, empty boxes would not be infinitely far.
+    if (shape_.levels == 0 || !isFinite(centre)) return;
+    const lanes::Sphere8 sphere(centre.x, centre.y, centre.z, radius * radius);
+    const uint32_t root = 0;
+    SphereSearch(tree_, shape_, sphere, out).descend(static_cast<size_t>(shape_.levels) - 1, {&root, 1});
+}
+
+float KdIndex::reachOfAll(Vec3 centre) const {
+    const Vec3 farthest = glm::max(glm::abs(tree_.bounds.lo - centre), glm::abs(tree_.bounds.hi - centre));
+    return std::max(1.0001F * glm::length(farthest), kLeastRadius);  // above all roundings
+}
+
+float guessRadius(const PhotonTreeView& tree, Vec3 centre, uint32_t count) {
+    const KdShape shape(tree.count);
+    if (shape.levels == 0 || !isFinite(centre)) return 1;
+    const lanes::Sphere8 point(centre.x, centre.y, centre.z, 0);
+    uint32_t node = 0, lane = 0;
+    const KdNode* at = nullptr;
+    float distanceSquared = 0;
+    for (auto level = static_cast<size_t>(shape.levels); level-- > 0; node = kNodeWidth * node + lane) {
+        at = &tree.nodes[shape.first[level] + node];
+        alignas(32) std::array<float, 8> distances;
+        const __m256 d = lanes::distanceToBoxes(*at, point);
+        lane = lanes::leastLane(d);
+        _mm256_store_ps(distances.data(), d);
+        distanceSquared = distances[lane];
+    }
+    // Photons lie on surfaces: the block's two longer sides span its area, or somewhat more than that.
+    const std::array<float, 3> side = {at->hiX[lane] - at->loX[lane], at->hiY[lane] - at->loY[lane],
+                                       at->hiZ[lane] - at->loZ[lane]};
+    const float area = std::max({side[0] * side[1], side[0] * side[2], side[1] * side[2]});
+    const float disc = std::sqrt(kSurplus * static_cast<float>(count) * area / (kPi * kBlockSize));
+    // Without area (one photon, or all in a row), any positive number will do, and grows.
+    const float least = 1e-3F * (side[0] + side[1] + side[2]) + 1e-6F * tree.bounds.radius() + kLeastRadius;
+    return std::sqrt(distanceSquared) + std::max(disc, least);
+}
+
+float grownRadius(float radius, uint64_t wanted, uint64_t found) {
+    // By area, and a bit more, since the density was overestimated; where little was found that says nothing, fourfold.
+    const float ratio = (static_cast<float>(wanted) + 2) / (static_cast<float>(found) + 0.5F);
+    return radius * std::clamp(1.15F * std::sqrt(ratio), 1.25F, 4.0F);
+}
+
+}  // namespace lsde

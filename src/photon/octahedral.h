@@ -1,0 +1,44 @@
+// The unit sphere on a square by way of an octahedron (Cigolle et al. 2014, "A Survey of Efficient Representations for
+// Independent Unit Vectors").
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "base/math.h"
+
+namespace lsde {
+
+// kBits for each of two coordinates, which are whole multiples of 1 / kSteps, so that the axes are exact.
+template <int kBits>
+struct Octahedral {
+    static constexpr uint32_t kMask = (1U << kBits) - 1;
+    static constexpr int kSteps = (1 << (kBits - 1)) - 1;
+    static constexpr int kBias = 1 << (kBits - 1);
+
+    // v: any length but zero.
+    static uint32_t pack(Vec3 v) {
+        const Vec3 onFace = v / (std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z));
+        // The lower half's triangles are folded outwards.
+        const float fold = std::max(-onFace.z, 0.0F);
+        return quantised(onFace.x + std::copysign(fold, onFace.x)) | quantised(onFace.y + std::copysign(fold, onFace.y))
+                                                                         << kBits;
+    }
+
+    // A vector in the direction packed, of length 0.57 to 1; any bits give one.
+    static Vec3 unpackUnnormalised(uint32_t bits) {
+        const float x = coordinate(bits), y = coordinate(bits >> kBits);
+        const float z = 1 - std::fabs(x) - std::fabs(y);
+        const float fold = std::max(-z, 0.0F);
+        return {x - std::copysign(fold, x), y - std::copysign(fold, y), z};
+    }
+    static Vec3 unpack(uint32_t bits) { return glm::normalize(unpackUnnormalised(bits)); }
+
+  private:
+    static uint32_t quantised(float x) { return static_cast<uint32_t>(std::lround(x * kSteps) + kBias) & kMask; }
+    static float coordinate(uint32_t bits) {
+        return static_cast<float>(static_cast<int>(bits & kMask) - kBias) * (1.0F / kSteps);
+    }
+};
+
+}  // namespace lsde

@@ -1,0 +1,261 @@
+#include "photon/density.h"
+
+#include <doctest/doctest.h>
+
+#include <string>
+
+#include "photon/brute_index.h"
+#include "photon/photons.h"
+
+using namespace lsde;
+using test::photonAt;
+using test::Random;
+using test::treeOf;
+
+namespace {
+
+DensityQuery queryAtOrigin(uint32_t minCount, float minRadius, float maxRadius) {
+    DensityQuery query;
+    query.sideNormal = {0, 0, 1};
+    query.minCount = minCount;
+    query.minRadius = minRadius;
+    query.maxRadius = maxRadius;
+    return query;
+}
+
+struct Estimate {
+    GatheredDisc disc;
+    double density = 0;  // photons / m2
+    std::vector<uint32_t> taken;
+};
+
+template <typename Index>
+Estimate estimate(const Index& index, const DensityQuery& query) {
+    DensityScratch scratch;
+    Estimate e;
+    e.disc = gatherPhotons(index, query, scratch, [&](uint32_t i, float weight) {
+        e.density += static_cast<double>(weight);
+        e.taken.push_back(i);
+    });
+    CHECK(e.taken.size() == e.disc.accepted);
+    return e;
+}
+
+Estimate estimate(const std::vector<Photon>& photons, const DensityQuery& query) {
+    const PhotonTree tree = treeOf(photons);
+    return estimate(KdIndex(view(tree)), query);
+}
+
+// Mean of estimates over independent Poisson maps of 100 photons/m2, in standard errors from the truth.
+struct Bias {
+    double relative, sigmas;
+};
+Bias biasOnPoissonMaps(const DensityQuery& query) {
+    constexpr int kMaps = 8000;
+    constexpr double kDensity = 100;
+    constexpr float kHalf = 1;  // m: the maps are squares of twice this
+    Random random(11);
+    ThreadPool pool(1);
+    double sum = 0, squares = 0;
+    DensityScratch scratch;
+    const PackedPhoton photon = pack(photonAt(Vec3(0)));
+    for (int map = 0; map < kMaps; ++map) {
+        std::vector<PackedPhoton> photons(random.poisson(kDensity * 4 * static_cast<double>(kHalf * kHalf)), photon);
+        for (PackedPhoton& p : photons) p.position = {random.between(-kHalf, kHalf), random.between(-kHalf, kHalf), 0};
+        const PhotonTree tree = buildPhotonTree(std::move(photons), pool);
+        double density = 0;
+        gatherPhotons(KdIndex(view(tree)), query, scratch,
+                      [&](uint32_t, float w) { density += static_cast<double>(w); });
+        sum += density;
+        squares += density * density;
+    }
+    const double mean = sum / kMaps;
+    const double error = std::sqrt((squares / kMaps - mean * mean) / kMaps);
+    return {mean / kDensity - 1, (mean - kDensity) / error};
+}
+
+}  // namespace
+
+TEST_CASE("the kernel has mass 1, and the share within a radius is its integral") {
+    double mass = 0;
+    constexpr int kSteps = 10'000;
+    const float radius = 0.3F;
+    for (int i = 0; i < kSteps; ++i) {
+        const float r = radius * (static_cast<float>(i) + 0.5F) / kSteps;
+        mass += static_cast<double>(epanechnikov(r * r, radius * radius) * 2 * kPi * r * radius / kSteps);
+        if (i == kSteps / 2 - 1)
+            CHECK(mass == doctest::Approx(static_cast<double>(epanechnikovWithin(0.5F))).epsilon(1e-4));
+    }
+    CHECK(mass == doctest::Approx(1).epsilon(1e-4));
+    CHECK(epanechnikovWithin(1) == 1);
+}
+
+TEST_CASE("the estimate of a uniform density has no bias in any regime of the radius") {
+    const struct {
+        std::string name;
+        uint32_t minCount;
+        float minRadius, maxRadius;
+    } regimes[] = {{"least radius", 2, 0.25F, 0.9F},  // holds 20 photons on average
+                   {"grown to 5 photons", 5, 0.001F, 0.9F}, {"grown to 20 photons", 20, 0.001F, 0.9F},
+                   {"grown or not", 20, 0.25F, 0.9F},       {"grown to the largest radius or not", 20, 0.001F, 0.25F},
+                   {"all of them", 20, 0.23F, 0.27F}};
+    for (const auto& r : regimes) {
+        const Bias bias = biasOnPoissonMaps(queryAtOrigin(r.minCount, r.minRadius, r.maxRadius));
+        MESSAGE(r.name << ": bias " << 100 * bias.relative << " %, " << bias.sigmas << " sigma");
+        CHECK(std::fabs(bias.sigmas) < 3.5);
+    }
+}
+
+TEST_CASE("a photon just outside the radius does not contribute") {
+    const DensityQuery query = queryAtOrigin(0, 0.5F, 0.5F);
+    CHECK(estimate({photonAt({0.4999F, 0, 0})}, query).disc.accepted == 1);
+    CHECK(estimate({photonAt({0.5F, 0, 0})}, query).disc.accepted == 0);
+    CHECK(estimate({photonAt({0.5001F, 0, 0})}, query).disc.accepted == 0);
+}
+
+TEST_CASE("the radius starts at the least, grows to hold enough photons, and stops at the largest") {
+    std::vector<Photon> photons;
+    for (int i = 1; i <= 100; ++i) photons.push_back(photonAt({0.01F * static_cast<float>(i), 0, 0}));
+    CHECK(estimate(photons, queryAtOrigin(20, 0.505F, 2)).disc.radius == doctest::Approx(0.505F));
+    CHECK(estimate(photons, queryAtOrigin(20, 0.505F, 2)).disc.accepted == 50);
+    CHECK(estimate(photons, queryAtOrigin(20, 0.01F, 2)).disc.radius == doctest::Approx(0.2F));
+    CHECK(estimate(photons, queryAtOrigin(20, 0, 2)).disc.radius == doctest::Approx(0.2F));
+    CHECK(estimate(photons, queryAtOrigin(20, 0.01F, 0.105F)).disc.radius == 0.105F);
+    CHECK(estimate(photons, queryAtOrigin(20, 0.01F, 0.105F)).disc.accepted == 10);
+    CHECK(estimate(photons, queryAtOrigin(1000, 0.01F, 2)).disc.radius == 2);
+    CHECK(estimate({}, queryAtOrigin(20, 0.01F, 2)).disc.radius == 2);
+    CHECK(estimate(photons, queryAtOrigin(20, 0, 0)).disc.accepted == 0);
+}
+
+TEST_CASE("photons lit from the other side, or on the other side of a sheet, do not count") {
+    Photon photon = photonAt(Vec3(0.1F, 0, 0));
+    DensityQuery query = queryAtOrigin(0, 1, 1);
+    CHECK(estimate({photon}, query).disc.accepted == 1);
+    query.sideNormal = {0, 0, -1};
+    CHECK(estimate({photon}, query).disc.accepted == 0);
+    photon.direction = {0.6F, 0, -0.8F};
+    CHECK(estimate({photon}, query).disc.accepted == 1);
+    photon.ng = {0, 0, -1};
+    CHECK(estimate({photon}, query).disc.accepted == 0);
+}
+
+TEST_CASE("photons on a surface turned away by more than 45 degrees do not count") {
+    for (int degrees = 0; degrees < 180; degrees += 3) {
+        const float angle = static_cast<float>(degrees) * kPi / 180;
+        Photon photon = photonAt(Vec3(0.1F, 0, 0));
+        photon.ng = {std::sin(angle), 0, std::cos(angle)};
+        if (std::abs(degrees - 46) > 2)
+            CHECK(estimate({photon}, queryAtOrigin(0, 1, 1)).disc.accepted == (degrees < 45 ? 1 : 0));
+    }
+}
+
+TEST_CASE("photons of another medium, or without the flags asked for, do not count") {
+    Photon photon = photonAt(Vec3(0.1F, 0, 0));
+    photon.medium = 3;
+    photon.flags = kFromDeltaLight;
+    DensityQuery query = queryAtOrigin(0, 1, 1);
+    CHECK(estimate({photon}, query).disc.accepted == 0);
+    query.medium = 3;
+    CHECK(estimate({photon}, query).disc.accepted == 1);
+    query.requiredFlags = kGlossyGather;
+    CHECK(estimate({photon}, query).disc.accepted == 0);
+    photon.flags = kFromDeltaLight | kGlossyGather;
+    CHECK(estimate({photon}, query).disc.accepted == 1);
+}
+
+TEST_CASE("photons beyond the plane's thickness do not count until the radius has grown") {
+    const auto accepted = [](float height, float radius) {
+        return estimate({photonAt(Vec3(0.01F, 0, height))}, queryAtOrigin(0, radius, radius)).disc.accepted;
+    };
+    CHECK(accepted(0.9F * kPlaneThickness, 1) == 1);
+    CHECK(accepted(-0.9F * kPlaneThickness, 1) == 1);
+    CHECK(accepted(1.1F * kPlaneThickness, 1) == 0);
+    CHECK(accepted(-1.1F * kPlaneThickness, 1) == 0);
+    CHECK(accepted(1.1F * kPlaneThickness, 1.2F) == 1);
+    // Grown to hold three: those of the plane, not the many of a step that is closer by.
+    std::vector<Photon> photons;
+    photons.reserve(60);
+    for (int i = 0; i < 50; ++i) photons.push_back(photonAt({0, 0.001F * static_cast<float>(i), 0.1F}));
+    for (int i = 1; i <= 3; ++i) photons.push_back(photonAt({0.1F * static_cast<float>(i), 0, 0}));
+    CHECK(estimate(photons, queryAtOrigin(3, 0, 1)).disc.radius == doctest::Approx(0.3F));
+}
+
+TEST_CASE("rounded positions far from the origin do not lie beyond the plane, however small the radius") {
+    const Vec3 normal = glm::normalize(Vec3(1, 2, 3));
+    const Frame frame(normal);
+    Random random(12);
+    std::vector<Photon> photons;
+    for (int i = 0; i < 1000; ++i) {
+        Photon p =
+            photonAt(Vec3(100, 50, 20) + 1e-3F * (frame.x * random.between(-1, 1) + frame.y * random.between(-1, 1)));
+        p.ng = p.direction = normal;
+        photons.push_back(p);
+    }
+    DensityQuery query = queryAtOrigin(0, 5e-5F, 5e-5F);
+    query.point.position = {100, 50, 20};
+    query.point.ng = query.sideNormal = normal;
+    const PhotonTree tree = treeOf(photons);
+    NeighbourList near;
+    BruteIndex(view(tree)).within(query.point.position, query.minRadius, near);
+    CHECK(near.size() > 0);
+    CHECK(estimate(KdIndex(view(tree)), query).disc.accepted == near.size());
+}
+
+TEST_CASE("the estimate on a sphere is that of its density") {
+    Random random(13);
+    std::vector<Photon> photons;
+    for (int i = 0; i < 200'000; ++i) {
+        Photon p = photonAt(random.onSphere());
+        p.ng = p.direction = p.position;
+        photons.push_back(p);
+    }
+    const PhotonTree tree = treeOf(photons);
+    const KdIndex index(view(tree));
+    double sum = 0;
+    constexpr int kQueries = 300;
+    for (int i = 0; i < kQueries; ++i) {
+        DensityQuery query = queryAtOrigin(0, 0.35F, 0.35F);
+        query.point.position = query.point.ng = query.sideNormal = random.onSphere();
+        sum += estimate(index, query).density / kQueries;
+    }
+    // 500 photons a disc, discs that overlap.
+    CHECK(sum == doctest::Approx(photons.size() / (4 * static_cast<double>(kPi))).epsilon(0.01));
+}
+
+TEST_CASE("estimates agree over all indices") {
+    Random random(14);
+    std::vector<Photon> photons;
+    for (int i = 0; i < 20'000; ++i) {
+        Photon p = photonAt({random.uniform(), std::pow(random.uniform(), 3.0F), 0.02F * random.uniform()});
+        p.medium = static_cast<uint16_t>(random.bits() % 2);
+        photons.push_back(p);
+    }
+    const PhotonTree tree = treeOf(photons);
+    const KdIndex kd(view(tree));
+    const FlannIndex flann(view(tree));
+    const BruteIndex brute(view(tree));
+    for (int i = 0; i < 200; ++i) {
+        DensityQuery query = queryAtOrigin(random.bits() % 60 + 2, random.between(0, 0.05F), random.between(0, 0.2F));
+        query.point.position = {random.uniform(), random.uniform(), 0.01F};
+        const Estimate a = estimate(kd, query), b = estimate(brute, query);
+        Estimate c = estimate(flann, query);
+        CHECK(a.taken == b.taken);
+        CHECK(a.disc.radius == b.disc.radius);
+        CHECK(c.disc.radius == b.disc.radius);
+        std::sort(c.taken.begin(), c.taken.end());
+        CHECK(c.taken == b.taken);
+    }
+}
+
+TEST_CASE("the distance to the k-th photon is that of sorting, and the largest radius where there are fewer") {
+    const PhotonTree tree = treeOf({Vec3(1, 0, 0), Vec3(2, 0, 0), Vec3(3, 0, 0)});
+    DensityScratch scratch;
+    for (const AnyIndex& index : {AnyIndex(std::in_place_type<KdIndex>, view(tree))}) {
+        CHECK(distanceToKth(index, Vec3(0), 1, 10, scratch) == 1);
+        CHECK(distanceToKth(index, Vec3(0), 3, 10, scratch) == 3);
+        CHECK(distanceToKth(index, Vec3(0), 4, 10, scratch) == 10);
+        CHECK(distanceToKth(index, Vec3(0), 3, 2.5F, scratch) == 2.5F);
+    }
+    const AnyIndex flann(std::in_place_type<FlannIndex>, view(tree));
+    CHECK(distanceToKth(flann, Vec3(0), 2, 10, scratch) == 2);
+}

@@ -1,0 +1,220 @@
+#include "photon/index.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <string>
+
+#include "base/error.h"
+#include "photon/brute_index.h"
+#include "photon/photons.h"
+
+using namespace lsde;
+using test::Random;
+using test::treeOf;
+
+static_assert(PhotonIndex<KdIndex> && PhotonIndex<FlannIndex> && PhotonIndex<BruteIndex>);
+
+namespace {
+
+struct Cloud {
+    std::string name;
+    std::function<Vec3(Random&)> point;
+};
+
+const Cloud kClouds[] = {
+    {"a cube", [](Random& r) { return r.inCube(); }},
+    {"a plane", [](Random& r) { return Vec3(r.uniform(), 0, r.uniform()); }},
+    {"a sphere far from the origin", [](Random& r) { return Vec3(1000, -2000, 500) + r.onSphere(); }},
+    {"a focus", [](Random& r) { return std::pow(r.uniform(), 6.0F) * Vec3(r.onSphere().x, r.onSphere().y, 0); }},
+    {"a line", [](Random& r) { return Vec3(0.5F, r.uniform(), 0.5F); }},
+    {"a coarse grid, with many at the same place", [](Random& r) { return glm::floor(r.inCube() * 4.0F) * 0.25F; }},
+    {"one place", [](Random&) { return Vec3(0.25F); }},
+    {"two places far apart", [](Random& r) { return r.uniform() < 0.1F ? Vec3(-1e15F) : Vec3(1e15F, 0, 0); }},
+    {"tiny coordinates", [](Random& r) { return 1e-20F * r.inCube(); }},
+};
+
+std::vector<Vec3> pointsOf(const Cloud& cloud, size_t count, uint32_t seed = 1) {
+    Random random(seed);
+    std::vector<Vec3> points(count);
+    for (Vec3& p : points) p = cloud.point(random);
+    return points;
+}
+
+std::vector<Neighbour> sorted(const NeighbourList& list) {
+    std::vector<Neighbour> out(list.begin(), list.end());
+    std::sort(out.begin(), out.end());
+    return out;
+}
+
+// Queries at photons, between them, around the bounds, and far outside.
+Vec3 queryPoint(const PhotonTree& tree, Random& random, int i) {
+    if (tree.count == 0) return random.inCube();
+    const auto photon = [&] { return view(tree).position(static_cast<uint32_t>(random.bits() % tree.count)); };
+    if (i % 4 == 0) return photon();
+    if (i % 4 == 1) return 0.5F * (photon() + photon());
+    const Vec3 size = tree.bounds.extent() + 1e-3F * glm::length(tree.bounds.extent());
+    return tree.bounds.centre() + (i % 4 == 2 ? 1.0F : 10.0F) * size * (random.inCube() - 0.5F);
+}
+
+void checkAgreement(const PhotonTree& tree, uint32_t seed) {
+    const KdIndex kd(view(tree));
+    const FlannIndex flann(view(tree));
+    const BruteIndex brute(view(tree));
+    Random random(seed);
+    NeighbourList a, b, c;
+    const float size = tree.count == 0 ? 1 : glm::length(tree.bounds.extent()) + 1e-9F;
+    for (int i = 0; i < 60; ++i) {
+        const Vec3 centre = queryPoint(tree, random, i);
+        const float radius = i % 10 == 9 ? kInfinity : size * std::pow(10.0F, random.between(-3, 0.7F));
+        CAPTURE(i);
+        CAPTURE(radius);
+        kd.within(centre, radius, a);
+        flann.within(centre, radius, b);
+        brute.within(centre, radius, c);
+        REQUIRE(std::is_sorted(a.begin(), a.end(), [](auto& x, auto& y) { return x.index < y.index; }));
+        REQUIRE(sorted(a) == sorted(c));
+        REQUIRE(sorted(b) == sorted(c));
+
+        const uint32_t k = random.bits() % (i % 3 == 0 ? 200 : 20);
+        const auto accept = [&](uint32_t index) { return i % 2 == 0 || index % 3 == 0; };
+        kd.nearest(centre, k, radius, a, accept);
+        flann.nearest(centre, k, radius, b, accept);
+        brute.nearest(centre, k, radius, c, accept);
+        REQUIRE(std::equal(a.begin(), a.end(), c.begin(), c.end()));
+        REQUIRE(std::equal(b.begin(), b.end(), c.begin(), c.end()));
+    }
+}
+
+std::vector<PackedPhoton> randomPhotons(size_t count, uint32_t seed) {
+    Random random(seed);
+    std::vector<PackedPhoton> photons;
+    for (size_t i = 0; i < count; ++i) photons.push_back(pack(test::randomPhoton(random, i)));
+    // The same place with other payloads, and photons that are equal in all.
+    for (size_t i = 0; i + 1 < count; i += 5) photons[i].position = photons[i + 1].position;
+    for (size_t i = 0; i + 9 < count; i += 9) photons[i] = photons[i + 2];
+    for (size_t i = 0; i < count; i += 2) photons[i].position.z = 0.25F;
+    return photons;
+}
+
+bool sameBytes(const PhotonTree& a, const PhotonTree& b) {
+    const auto same = [](const auto& x, const auto& y) {
+        return x.size() == y.size() && (x.empty() || std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0);
+    };
+    return a.count == b.count && same(a.blocks, b.blocks) && same(a.nodes, b.nodes) && same(a.payload, b.payload);
+}
+
+}  // namespace
+
+TEST_CASE("all indices find the same photons at the same distances") {
+    for (const Cloud& cloud : kClouds)
+        for (const size_t count : {0, 1, 2, 15, 16, 17, 128, 129, 1024, 1025, 5000}) {
+            CAPTURE(cloud.name);
+            CAPTURE(count);
+            checkAgreement(treeOf(pointsOf(cloud, count)), static_cast<uint32_t>(count));
+        }
+}
+
+TEST_CASE("a query that is not finite finds nothing") {
+    const PhotonTree tree = treeOf(pointsOf(kClouds[0], 1000));
+    const FlannIndex flann(view(tree));
+    NeighbourList found;
+    for (const float bad : {std::numeric_limits<float>::quiet_NaN(), kInfinity, -kInfinity})
+        for (int axis = 0; axis < 3; ++axis) {
+            Vec3 centre(0.5F);
+            centre[axis] = bad;
+            KdIndex(view(tree)).within(centre, kInfinity, found);
+            CHECK(found.empty());
+            KdIndex(view(tree)).nearest(centre, 5, kInfinity, found);
+            CHECK(found.empty());
+            flann.within(centre, kInfinity, found);
+            CHECK(found.empty());
+        }
+    KdIndex(view(tree)).within(Vec3(0.5F), std::numeric_limits<float>::quiet_NaN(), found);
+    CHECK(found.empty());
+    KdIndex(view(tree)).within(Vec3(kAbsentPhoton), kInfinity, found);
+    CHECK(found.empty());
+}
+
+TEST_CASE("radii exclude photons exactly at their end") {
+    const PhotonTree tree = treeOf({Vec3(0), Vec3(3, 0, 4), Vec3(0, 0, 5)});
+    NeighbourList found;
+    KdIndex(view(tree)).within(Vec3(0), 5, found);
+    CHECK(found.size() == 1);
+    KdIndex(view(tree)).within(Vec3(0), std::nextafter(5.0F, 6.0F), found);
+    CHECK(found.size() == 3);
+}
+
+TEST_CASE("photons of equal distance are taken by index") {
+    std::vector<Vec3> ring;
+    ring.reserve(400);
+    for (int i = 0; i < 400; ++i) ring.emplace_back(i % 2, i / 2 % 2, 0);
+    const PhotonTree tree = treeOf(ring);
+    NeighbourList found;
+    KdIndex(view(tree)).nearest({0.5F, 0.5F, 0}, 100, kInfinity, found);
+    REQUIRE(found.size() == 100);
+    for (uint32_t i = 0; i < 100; ++i) CHECK(found[i].index == i);
+}
+
+TEST_CASE("a tree depends on the set of its photons only, not on their order or on threads") {
+    for (const size_t count : {1, 16, 100, 1000, 150'000}) {
+        std::vector<PackedPhoton> photons = randomPhotons(count, 5);
+        const auto build = [&](int threads) {
+            ThreadPool pool(threads);
+            return buildPhotonTree(std::vector(photons), pool);
+        };
+        const PhotonTree tree = build(1);
+        for (const uint32_t seed : {1U, 2U}) {
+            std::shuffle(photons.begin(), photons.end(), std::mt19937(seed));
+            CHECK(sameBytes(tree, build(1)));
+            CHECK(sameBytes(tree, build(4)));
+        }
+    }
+}
+
+TEST_CASE("a tree holds exactly its photons") {
+    const std::vector<PackedPhoton> photons = randomPhotons(5000, 6);
+    ThreadPool pool(2);
+    const PhotonTree tree = buildPhotonTree(std::vector(photons), pool);
+    std::vector<PackedPhoton> held, expected = photons;
+    for (uint32_t i = 0; i < tree.count; ++i) held.push_back({view(tree).position(i), tree.payload[i]});
+    std::sort(held.begin(), held.end());
+    std::sort(expected.begin(), expected.end());
+    REQUIRE(held.size() == expected.size());
+    for (size_t i = 0; i < held.size(); ++i) REQUIRE((!(held[i] < expected[i]) && !(expected[i] < held[i])));
+    Bounds bounds;
+    for (const PackedPhoton& p : photons) bounds.grow(p.position);
+    CHECK(tree.bounds.lo == bounds.lo);
+    CHECK(tree.bounds.hi == bounds.hi);
+}
+
+TEST_CASE("a photon at no finite place is refused") {
+    for (const float bad : {std::numeric_limits<float>::quiet_NaN(), kInfinity, -1e19F}) {
+        std::vector<PackedPhoton> photons(100);
+        photons[42].position.z = bad;
+        ThreadPool pool(1);
+        CHECK_THROWS_WITH_AS(buildPhotonTree(std::move(photons), pool), doctest::Contains("position"), Error);
+    }
+}
+
+TEST_CASE("order statistics by buckets agree with sorting") {
+    Random random(7);
+    for (int i = 0; i < 2000; ++i) {
+        std::vector<float> values(1 + random.bits() % 300);
+        const float bound = std::pow(10.0F, random.between(-38, 38));
+        for (float& v : values)
+            v = 0.999F * bound * (i % 3 == 0 ? std::pow(random.uniform(), 20.0F) : random.uniform());
+        NeighbourList list;
+        for (const float v : values) list.push({static_cast<uint32_t>(list.size()), v});
+        std::vector<Neighbour> expected = sorted(list);
+        const size_t k = 1 + random.bits() % values.size();
+        CHECK(kthSmallest(values, k, bound) == expected[k - 1].distanceSquared);
+        keepNearest(list, k, bound);
+        expected.resize(k);
+        CHECK(sorted(list) == expected);
+        CHECK(std::is_sorted(list.begin(), list.end()));
+    }
+}

@@ -1,0 +1,72 @@
+// Photons for tests.
+#pragma once
+
+#include <cmath>
+#include <functional>
+#include <random>
+#include <vector>
+
+#include "base/hash.h"
+#include "photon/kd_index.h"
+
+namespace lsde::test {
+
+class Random {
+  public:
+    explicit Random(uint32_t seed) : engine_(seed) {}
+    uint32_t bits() { return engine_(); }
+    float uniform() { return toUnitFloat(engine_()); }
+    float between(float lo, float hi) { return lo + (hi - lo) * uniform(); }
+    Vec3 inCube() { return {uniform(), uniform(), uniform()}; }
+    Vec3 onSphere() {
+        const float z = between(-1, 1), angle = between(0, 2 * kPi), r = std::sqrt(std::max(0.0F, 1 - z * z));
+        return {r * std::cos(angle), r * std::sin(angle), z};
+    }
+    uint32_t poisson(double mean) { return std::poisson_distribution<uint32_t>(mean)(engine_); }
+
+  private:
+    std::mt19937 engine_;
+};
+
+// On the plane z = 0, lit from above.
+inline Photon photonAt(Vec3 position, uint64_t key = 0) {
+    Photon p;
+    p.position = position;
+    p.power = Rgb(1, 2, 3);
+    p.direction = p.ng = {0, 0, 1};
+    p.path.append(Event::Specular);
+    p.key = key;
+    return p;
+}
+
+inline PhotonTree treeOf(const std::vector<Photon>& photons) {
+    std::vector<PackedPhoton> packed;
+    packed.reserve(photons.size());
+    for (const Photon& p : photons) packed.push_back(pack(p));
+    ThreadPool pool(1);
+    return buildPhotonTree(std::move(packed), pool);
+}
+
+inline PhotonTree treeOf(const std::vector<Vec3>& positions) {
+    std::vector<Photon> photons;
+    photons.reserve(positions.size());
+    for (const Vec3 p : positions) photons.push_back(photonAt(p, photons.size()));
+    return treeOf(photons);
+}
+
+// All fields random, all of them valid.
+inline Photon randomPhoton(Random& random, uint64_t key) {
+    Photon p;
+    p.position = random.inCube() - 0.5F;
+    p.power = 100.0F * random.inCube();
+    p.direction = random.onSphere();
+    p.ng = random.onSphere();
+    p.light = static_cast<uint16_t>(random.bits() % 2);
+    p.medium = static_cast<uint16_t>(random.bits() % 3);
+    p.flags = static_cast<uint16_t>(random.bits() % 4);
+    for (uint32_t n = random.bits() % 5; n-- > 0;) p.path.append(static_cast<Event>(random.bits() % kEventCount));
+    p.key = key;
+    return p;
+}
+
+}  // namespace lsde::test

@@ -1,0 +1,73 @@
+#include "photon/surface_extent.h"
+
+#include <doctest/doctest.h>
+
+#include "photon/kernel.h"
+
+using namespace lsde;
+
+namespace {
+
+// The rim of a square [0, 10]^2 in the plane z = 0.
+const std::vector<Segment> kSquare = {
+    {{0, 0, 0}, {10, 0, 0}}, {{10, 0, 0}, {10, 10, 0}}, {{10, 10, 0}, {0, 10, 0}}, {{0, 10, 0}, {0, 0, 0}}};
+
+SurfaceAround around(Vec3 p, float radius) {
+    SurfaceAround out;
+    SurfaceExtent(kSquare, 1).around(p, {0, 0, 1}, radius, out);
+    return out;
+}
+
+double shareAt(Vec3 p, float radius) { return static_cast<double>(around(p, radius).share(radius)); }
+
+// The kernel's mass on the side x < distance (in radii) of a straight edge.
+double massBeside(double distance) {
+    double mass = 0;
+    constexpr int kSteps = 1000;
+    for (int i = 0; i < kSteps; ++i)
+        for (int j = 0; j < kSteps; ++j) {
+            const double x = 2 * (i + 0.5) / kSteps - 1, y = 2 * (j + 0.5) / kSteps - 1;
+            if (x < distance && x * x + y * y < 1)
+                mass += 4.0 / kSteps / kSteps * 2 / 3.14159265358979 * (1 - x * x - y * y);
+        }
+    return mass;
+}
+
+}  // namespace
+
+TEST_CASE("all of the kernel lies on a surface that ends beyond the radius") {
+    CHECK(shareAt({5, 5, 0}, 1) == 1);
+    CHECK(shareAt({5, 0.51F, 0}, 0.5F) == 1);
+    SurfaceAround out;
+    SurfaceExtent().around({0, 0, 0}, {0, 0, 1}, 1, out);
+    CHECK(out.share(1) == 1);
+}
+
+TEST_CASE("half the kernel lies on a surface at its edge, a quarter at its corner") {
+    CHECK(shareAt({5, 1e-4F, 0}, 0.5F) == doctest::Approx(0.5).epsilon(0.01));
+    CHECK(shareAt({1e-4F, 1e-4F, 0}, 0.5F) == doctest::Approx(0.25).epsilon(0.01));
+}
+
+TEST_CASE("beside a straight edge the share is the kernel's integral") {
+    for (const float distance : {0.1F, 0.3F, 0.6F, 0.9F})
+        CHECK(shareAt({5, distance, 0}, 1) == doctest::Approx(massBeside(static_cast<double>(distance))).epsilon(0.01));
+}
+
+TEST_CASE("an edge above the plane's thickness does not end the surface") {
+    CHECK(shareAt({5, 0.1F, -0.9F * kPlaneThickness}, 1) < 1);
+    CHECK(shareAt({5, 0.1F, -1.1F * kPlaneThickness}, 1) == 1);
+}
+
+TEST_CASE("a photon behind a crease is hidden, one before it or beside it is not") {
+    const SurfaceAround surface = around({5, 0.2F, 0}, 0.5F);
+    REQUIRE(!surface.whole());
+    CHECK(surface.hides({5, -0.1F, 0}));
+    CHECK(surface.hides({5.3F, -0.1F, 0}));
+    CHECK(!surface.hides({5, 0.1F, 0}));
+    CHECK(!surface.hides({5.3F, 0.01F, 0}));
+    const std::vector<Segment> wall = {{{0, 0, 0}, {1, 0, 0}}};
+    SurfaceAround beside;
+    SurfaceExtent(wall, 1).around({1.1F, 0.1F, 0}, {0, 0, 1}, 0.5F, beside);
+    CHECK(!beside.hides({1.2F, -0.1F, 0}));
+    CHECK(beside.hides({0.8F, -0.1F, 0}));
+}
