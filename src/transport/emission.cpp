@@ -1,0 +1,253 @@
+#include "transport/emission.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "sampling/warp.h"
+
+namespace lsde {
+
+namespace {
+
+// The cone in which a sphere is seen from p; covers everything if p is inside.
+struct Cone {
+    Vec3 axis{0, 0, 1};
+    float oneMinusCos = 2;
+    bool everything = true;
+};
+
+Cone coneTo(const Sphere& s, Vec3 p) {
+    const Vec3 d = s.centre - p;
+    const float d2 = lengthSquared(d), r2 = square(s.radius);
+    if (d2 <= r2 * 1.0002F) return {};
+    const float sin2 = r2 / d2;
+    // 1 - cos without cancellation for narrow cones.
+    return {d / std::sqrt(d2), sin2 / (1 + std::sqrt(1 - sin2)), false};
+}
+
+bool within(const Cone& cone, Vec3 direction) {
+    // |direction - axis|^2 / 2 = 1 - cos, exact for narrow cones as well.
+    return cone.everything || 0.5F * lengthSquared(direction - cone.axis) <= cone.oneMinusCos;
+}
+
+Vec2 discOffset(const Sphere& s, Vec3 position, const Frame& frame) {
+    const Vec3 d = position - s.centre;
+    return {glm::dot(d, frame.x), glm::dot(d, frame.y)};
+}
+
+// How much of the light's emission goes towards a caster, roughly: mean over a few fixed points of the light.
+double usefulness(const Light& light, const Sphere& caster) {
+    if (const auto* point = std::get_if<PointLight>(&light.shape)) {
+        const Cone cone = coneTo(caster, point->position);
+        if (!point->isSpot() || cone.everything) return cone.oneMinusCos;
+        // Spots that shine past the caster have no use for it.
+        const float between = std::acos(std::clamp(glm::dot(cone.axis, point->axis), -1.0F, 1.0F));
+        const float reach = std::acos(1 - cone.oneMinusCos) + std::acos(1 - point->oneMinusCosOuter);
+        return between < reach ? cone.oneMinusCos : 0;
+    }
+    if (std::holds_alternative<DirectionalLight>(light.shape)) return square(caster.radius);
+    const auto& area = std::get<AreaLight>(light.shape);
+    constexpr int kPoints = 32;
+    double sum = 0;
+    for (int i = 0; i < kPoints; ++i) {
+        const Vec2 u((static_cast<float>(i) + 0.5F) / kPoints, std::fmod(static_cast<float>(i) * 0.61803399F, 1.0F));
+        const EmissionPoint e = area.samplePoint(u, i % 2 == 0 ? 0.25F : 0.75F);
+        const Cone cone = coneTo(caster, e.position);
+        const float sine = cone.everything ? 1 : safeSqrt(cone.oneMinusCos * (2 - cone.oneMinusCos));
+        const float cosine = cone.everything ? 1 : glm::dot(e.normal, cone.axis);
+        sum += cone.oneMinusCos * std::clamp(cosine + sine, 0.0F, 1.0F);
+    }
+    return sum / kPoints;
+}
+
+// Bounds of each solid: what starts outside of all of them starts in the open.
+std::vector<Bounds> solidBounds(const Scene& scene) {
+    std::vector<Bounds> solids;
+    for (size_t i = 0; i < scene.meshes().size(); ++i) {
+        if (scene.meshes()[i].medium == kOutside) continue;
+        const Mesh& mesh = scene.description().meshes[i];
+        solids.push_back(mesh.bounds());
+        // An open sheet (water) holds everything below it.
+        if (mesh.openEdges > 0) solids.back().lo.y = -kInfinity;
+    }
+    return solids;
+}
+
+float wholePdf(const PointLight& light, Vec3 direction) {
+    if (!light.isSpot()) return kUniformSpherePdf;
+    return 0.5F * lengthSquared(direction - light.axis) <= light.oneMinusCosOuter ? conePdf(light.oneMinusCosOuter) : 0;
+}
+
+}  // namespace
+
+EmissionSampler::EmissionSampler(const Scene& scene, const std::vector<bool>& selected, bool aim, float wholeShare)
+    : scene_(scene), wholeShare_(aim ? wholeShare : 1) {
+    const std::vector<Bounds> solids = solidBounds(scene);
+    std::vector<double> weights(scene.lights().size());
+    double total = 0, count = 0;
+    for (size_t i = 0; i < weights.size(); ++i) {
+        aims_.push_back(selected[i] ? aimOf(scene.lights()[i], solids) : Aim{});
+        if (!selected[i]) continue;
+        totalPower_ += scene.lights()[i].power();
+        weights[i] = luminance(scene.lights()[i].power());
+        total += weights[i];
+        ++count;
+    }
+    if (!(total > 0)) throw Error(scene.description().file.string() + ": no light is selected that emits anything");
+    // A fifth of the paths is shared evenly: no light is starved.
+    for (size_t i = 0; i < weights.size(); ++i)
+        if (selected[i]) weights[i] = 0.8 * weights[i] / total + 0.2 / count;
+    choice_ = DiscreteDistribution(weights);
+}
+
+// The whole emission first, then the casters by their use to the light, with a floor for each that has any.
+DiscreteDistribution EmissionSampler::partsOf(const Light& light) const {
+    std::vector<double> parts{wholeShare_};
+    double total = 0;
+    for (const Caster& caster : scene_.casters()) {
+        parts.push_back(usefulness(light, caster.bounds));
+        total += parts.back();
+    }
+    const auto casters = static_cast<double>(scene_.casters().size());
+    for (size_t i = 1; i < parts.size(); ++i)
+        if (parts[i] > 0) parts[i] = (1 - wholeShare_) * (0.9 * parts[i] / total + 0.1 / casters);
+    return DiscreteDistribution(parts);
+}
+
+EmissionSampler::Aim EmissionSampler::aimOf(const Light& light, const std::vector<Bounds>& solids) const {
+    Aim out;
+    out.parts = partsOf(light);
+    if (const auto* point = std::get_if<PointLight>(&light.shape)) out.media = scene_.mediaAt(point->position);
+    if (const auto* area = std::get_if<AreaLight>(&light.shape))
+        out.mayStartInside =
+            std::any_of(solids.begin(), solids.end(), [&](const Bounds& s) { return s.overlaps(area->bounds); });
+    return out;
+}
+
+float EmissionSampler::aimedConePdf(const Aim& aim, Vec3 position, Vec3 direction, float whole) const {
+    float pdf = 0;
+    for (size_t i = 1; i < aim.parts.size(); ++i) {
+        if (!(aim.parts.pmf(i) > 0)) continue;
+        const Cone cone = coneTo(scene_.casters()[i - 1].bounds, position);
+        if (within(cone, direction)) pdf += aim.parts.pmf(i) * (cone.everything ? whole : conePdf(cone.oneMinusCos));
+    }
+    return pdf;
+}
+
+float EmissionSampler::aimedDiscPdf(const Aim& aim, const DirectionalLight& light, Vec3 position) const {
+    const Frame frame(light.direction);
+    float pdf = 0;
+    for (size_t i = 1; i < aim.parts.size(); ++i) {
+        const Sphere& s = scene_.casters()[i - 1].bounds;
+        const Vec2 d = discOffset(s, position, frame);
+        if (glm::dot(d, d) <= square(s.radius)) pdf += aim.parts.pmf(i) / (kPi * square(s.radius));
+    }
+    return pdf;
+}
+
+bool EmissionSampler::sampleArea(const AreaLight& light, const Aim& aim, size_t part, Sampler& sampler,
+                                 LightPathStart& start) const {
+    const Vec2 uPosition = sampler.next2D(), uDirection = sampler.next2D();
+    sampler.skipTo(5);
+    const EmissionPoint e = light.samplePoint(uPosition, sampler.next());
+    const Frame frame(e.normal);
+    Cone cone;
+    if (part > 0) cone = coneTo(scene_.casters()[part - 1].bounds, e.position);
+    const Vec3 direction = cone.everything ? frame.toWorld(squareToCosineHemisphere(uDirection))
+                                           : Frame(cone.axis).toWorld(squareToCone(uDirection, cone.oneMinusCos));
+    const float cosine = glm::dot(direction, e.normal);
+    if (!(cosine > 0)) return false;
+    const float whole = cosineHemispherePdf(cosine);
+    const float mixture = aim.parts.pmf(0) * whole + aimedConePdf(aim, e.position, direction, whole);
+    start.ray = {offsetOrigin(e.position, e.normal, direction, e.epsilon), direction, kInfinity};
+    start.power = e.radiance * (cosine / (e.pdfA * mixture));
+    start.aimWeight = whole / mixture;
+    return true;
+}
+
+bool EmissionSampler::samplePoint(const PointLight& light, const Aim& aim, size_t part, Sampler& sampler,
+                                  LightPathStart& start) const {
+    const Vec2 u = sampler.next2D();
+    Cone cone;
+    if (part > 0) cone = coneTo(scene_.casters()[part - 1].bounds, light.position);
+    Vec3 direction;
+    if (!cone.everything)
+        direction = Frame(cone.axis).toWorld(squareToCone(u, cone.oneMinusCos));
+    else if (light.isSpot())
+        direction = Frame(light.axis).toWorld(squareToCone(u, light.oneMinusCosOuter));
+    else
+        direction = squareToSphere(u);
+    const float falloff = light.falloff(direction);
+    if (!(falloff > 0)) return false;
+    const float whole = wholePdf(light, direction);
+    const float mixture = aim.parts.pmf(0) * whole + aimedConePdf(aim, light.position, direction, whole);
+    start.ray = {light.position, direction, kInfinity};
+    start.power = light.intensity * (falloff / mixture);
+    start.aimWeight = whole / mixture;
+    return true;
+}
+
+void EmissionSampler::sampleDirectional(const DirectionalLight& light, const Aim& aim, size_t part, Sampler& sampler,
+                                        LightPathStart& start) const {
+    const Vec2 u = squareToDisk(sampler.next2D());
+    const Frame frame(light.direction);
+    const Sphere& disc = part > 0 ? scene_.casters()[part - 1].bounds : light.scene;
+    const Vec3 inPlane = disc.centre + disc.radius * (u.x * frame.x + u.y * frame.y);
+    // Back to a plane before the whole scene.
+    const float back = glm::dot(inPlane - light.scene.centre, light.direction) + 1.01F * light.scene.radius;
+    start.ray = {inPlane - back * light.direction, light.direction, kInfinity};
+    const float whole = 1 / (kPi * square(light.scene.radius));
+    const Vec2 offset = discOffset(light.scene, inPlane, frame);
+    const bool inWhole = glm::dot(offset, offset) <= square(light.scene.radius);
+    const float mixture = (inWhole ? aim.parts.pmf(0) * whole : 0) + aimedDiscPdf(aim, light, inPlane);
+    start.power = inWhole ? light.irradiance / mixture : Rgb(0);
+    start.aimWeight = whole / mixture;
+}
+
+bool EmissionSampler::sample(Sampler& sampler, LightPathStart& start) const {
+    // The choice has dimension 4: the first four, whose strata matter most, are left to position and direction.
+    Sampler choice = sampler;
+    choice.skipTo(4);
+    float u = choice.next();
+    start.light = choice_.sample(u);
+    const Aim& aim = aims_[start.light];
+    const size_t part = aim.parts.sample(u);
+    const Light& light = scene_.lights()[start.light];
+    start.media = aim.media;
+    bool emits = true;
+    if (const auto* area = std::get_if<AreaLight>(&light.shape))
+        emits = sampleArea(*area, aim, part, sampler, start);
+    else if (const auto* point = std::get_if<PointLight>(&light.shape))
+        emits = samplePoint(*point, aim, part, sampler, start);
+    else
+        sampleDirectional(std::get<DirectionalLight>(light.shape), aim, part, sampler, start);
+    if (!emits || isBlack(start.power)) return false;
+    start.power /= choice_.pmf(start.light);
+    if (aim.mayStartInside) start.media = scene_.mediaAt(start.ray.origin);
+    sampler.skipTo(6);
+    return true;
+}
+
+EmissionSampler::Densities EmissionSampler::directionDensities(size_t index, Vec3 position, Vec3 normal,
+                                                               Vec3 direction) const {
+    const Light& light = scene_.lights()[index];
+    Densities d;
+    if (const auto* point = std::get_if<PointLight>(&light.shape))
+        d.whole = wholePdf(*point, direction);
+    else
+        d.whole = cosineHemispherePdf(glm::dot(direction, normal));
+    d.mixture = aims_[index].parts.pmf(0) * d.whole + aimedConePdf(aims_[index], position, direction, d.whole);
+    return d;
+}
+
+EmissionSampler::Densities EmissionSampler::discDensities(size_t index, Vec3 position) const {
+    const auto& light = std::get<DirectionalLight>(scene_.lights()[index].shape);
+    const Vec2 offset = discOffset(light.scene, position, Frame(light.direction));
+    Densities d;
+    d.whole = glm::dot(offset, offset) <= square(light.scene.radius) ? 1 / (kPi * square(light.scene.radius)) : 0;
+    d.mixture = aims_[index].parts.pmf(0) * d.whole + aimedDiscPdf(aims_[index], light, position);
+    return d;
+}
+
+}  // namespace lsde

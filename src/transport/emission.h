@@ -1,0 +1,73 @@
+// Where light paths start: a light, a point on it, a direction; aimed at what bends light.
+//
+// Each light samples a mixture of its whole emission (at least a fifth) and of parts aimed at the casters' bounding
+// spheres: cones for point, spot and area lights, discs for directional ones (Jensen 1996, projection maps; as a
+// defensive mixture after Hesterberg 1995). Every path's weight is whole density / mixture density.
+#pragma once
+
+#include <vector>
+
+#include "sampling/sampler.h"
+#include "transport/walk.h"
+
+namespace lsde {
+
+// Share of a light's paths that is not aimed: where photons are wanted that bent, and where all that is lit is.
+inline constexpr float kWholeEmissionShare = 0.2F;
+inline constexpr float kWholeEmissionShareSeen = 0.8F;
+
+struct LightPathStart {
+    Ray ray;
+    MediaStack media;
+    Rgb power{0};  // W of this path: the light's emission over the density of all choices
+    size_t light = 0;
+    float aimWeight = 1;  // whole / mixture density
+};
+
+class EmissionSampler {
+  public:
+    // selected[i]: light i takes part. Throws Error if none does.
+    EmissionSampler(const Scene& scene, const std::vector<bool>& selected, bool aim,
+                    float wholeShare = kWholeEmissionShare);
+
+    // Takes the sampler's first dimensions: position 0-1, direction 2-3 (0-1 where a light has no choice of position),
+    // choice of light and part 4, side 5. False: this start carries no light (below an emitter's horizon, outside a
+    // spot's cone).
+    bool sample(Sampler& sampler, LightPathStart& start) const;
+
+    Rgb totalPower() const { return totalPower_; }  // W, of the lights that take part
+    // Density of a direction (1/sr; directional: of a point on the disc's plane, 1/m2) from `position` on light i by
+    // the whole emission and by the mixture; for tests.
+    struct Densities {
+        float whole = 0, mixture = 0;
+    };
+    Densities directionDensities(size_t light, Vec3 position, Vec3 normal, Vec3 direction) const;
+    Densities discDensities(size_t light, Vec3 position) const;
+
+  private:
+    // Part 0 is the whole emission, part 1 + i is aimed at caster i.
+    struct Aim {
+        DiscreteDistribution parts;
+        MediaStack media;             // point and spot lights: the solids around them
+        bool mayStartInside = false;  // area lights: paths may start within a solid, its media are looked up for each
+    };
+
+    DiscreteDistribution partsOf(const Light& light) const;
+    Aim aimOf(const Light& light, const std::vector<Bounds>& solids) const;
+    bool sampleArea(const AreaLight& light, const Aim& aim, size_t part, Sampler& sampler, LightPathStart& start) const;
+    bool samplePoint(const PointLight& light, const Aim& aim, size_t part, Sampler& sampler,
+                     LightPathStart& start) const;
+    void sampleDirectional(const DirectionalLight& light, const Aim& aim, size_t part, Sampler& sampler,
+                           LightPathStart& start) const;
+    // Sum over the aimed parts of choice probability times density.
+    float aimedConePdf(const Aim& aim, Vec3 position, Vec3 direction, float wholePdf) const;
+    float aimedDiscPdf(const Aim& aim, const DirectionalLight& light, Vec3 position) const;
+
+    const Scene& scene_;
+    DiscreteDistribution choice_;
+    std::vector<Aim> aims_;
+    float wholeShare_;  // 1: not aimed
+    Rgb totalPower_{0};
+};
+
+}  // namespace lsde

@@ -1,0 +1,25 @@
+// A point of a path where light meets a surface.
+#pragma once
+
+#include "bsdf/bsdf.h"
+#include "scene/scene.h"
+
+namespace lsde {
+
+struct Vertex {
+    Surface surface;
+    Bsdf bsdf;
+    Frame frame;                 // about the shading normal, front side
+    Vec3 woWorld{0};             // unit, back along the path
+    Vec3 wo{0};                  // the same in the frame
+    MediaStack before;           // on wo's side
+    MediaStack behind;           // on the other side
+    MediumId medium = kOutside;  // dominant one on wo's side
+    float distance = 0;          // m travelled to get here
+    bool interface = false;      // bounds a solid
+
+    // The geometric normal on wo's side.
+    Vec3 sideNormal() const { return glm::dot(surface.ng, woWorld) < 0 ? -surface.ng : surface.ng; }
+};
+
+}  // namespace lsde

@@ -1,0 +1,45 @@
+// The one random walk, from lights and from the camera: from surface to surface, and over each of them.
+#pragma once
+
+#include <vector>
+
+#include "transport/vertex.h"
+
+namespace lsde {
+
+// What is carried along the path: radiance of the eye's path is scaled by eta^2 where it crosses an interface, power is
+// not; power takes the correction for shading normals (Veach 1997, section 5.3), radiance does not.
+enum class Quantity : uint8_t { Radiance, Power };
+
+struct PathState {
+    Ray ray;
+    MediaStack media;   // around the ray's origin
+    Rgb throughput{1};  // eye: dimensionless; light: W
+};
+
+// Scratch of one thread.
+struct WalkScratch {
+    std::vector<Hit> hits;
+    uint64_t rays = 0;
+};
+
+// Follows the ray to the next surface where something happens: crossings of solids that another solid hides are passed
+// over. The throughput takes the media's absorption (Beer-Lambert). False: the light escapes.
+bool advance(const Scene& scene, PathState& path, Vertex& vertex, WalkScratch& scratch);
+
+// Leaves the vertex by the sample. False if nothing is carried on: the sampled direction's geometric and shading sides
+// differ, or the throughput is zero.
+bool scatter(const Vertex& vertex, const BsdfSample& sample, Quantity quantity, PathState& path);
+
+// Light along a segment that starts at a vertex: 0 if something is in the way before `distance` (m; may be infinite);
+// smooth thin walls tint it and are counted (each is an S of the path); the medium at the vertex absorbs.
+struct Visibility {
+    Rgb transmittance{0};
+    int straightPassages = 0;
+};
+Visibility visibility(const Scene& scene, const Vertex& from, Vec3 wi, float distance, WalkScratch& scratch);
+
+// exp(-absorption distance) of the stack's dominant medium.
+Rgb absorption(const Scene& scene, const MediaStack& media, float distance);
+
+}  // namespace lsde

@@ -1,0 +1,347 @@
+#include "transport/emission.h"
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <vector>
+
+#include "base/error.h"
+#include "support/chi_squared.h"
+#include "support/scenes.h"
+#include "support/statistics.h"
+
+using namespace lsde;
+using test::SceneBuilder;
+
+namespace {
+
+// Where the light of these tests is, and around it casters far and near, overlapping, holding it, and behind it.
+const Vec3 kLight(0.1F, 2, -0.2F);
+
+void addCasters(SceneBuilder& scene) {
+    const auto caster = [&](Vec3 centre, float radius) { scene.add(test::sphere(centre, radius, 1), test::metal(0)); };
+    caster({0, 0.5F, 0}, 0.5F);
+    caster({0.4F, 0.4F, 0.1F}, 0.4F);   // overlaps the first
+    caster({-1.5F, 0.2F, 0.8F}, 0.1F);  // small
+    caster({0.2F, 3, 0}, 0.3F);         // behind a light that shines down
+    caster({1.5F, 1.9F, 0.3F}, 0.5F);   // on its horizon
+}
+
+void addContainingCaster(SceneBuilder& scene) { scene.add(test::sphere(kLight, 1, 1), test::metal(0)); }
+
+// So small that every point of it sees the casters in the same directions; five triangles of different sizes.
+Mesh speck() {
+    const auto corner = [](float x, float z) { return kLight + 1e-5F * Vec3(x, 0, z); };
+    return test::polygonFan({corner(0, 0), corner(1, 0), corner(1, 0.3F), corner(0.9F, 0.9F), corner(0.4F, 1),
+                             corner(0, 0.9F), corner(-0.2F, 0.5F)});
+}
+
+enum class Kind { Point, Spot, NarrowSpot, AreaDown, AreaBothSides, Sun };
+constexpr std::array kKinds = {Kind::Point,    Kind::Spot,          Kind::NarrowSpot,
+                               Kind::AreaDown, Kind::AreaBothSides, Kind::Sun};
+
+void addLight(SceneBuilder& scene, Kind kind, const Mesh& lamp = speck()) {
+    const Rgb strength(1, 2, 0.5F);
+    switch (kind) {
+        case Kind::Point:
+            return scene.point(kLight, strength);
+        case Kind::Spot:
+            return scene.spot(kLight, {0.3F, 0, 0}, strength, 20, 60);
+        case Kind::NarrowSpot:
+            return scene.spot(kLight, {0.1F, 0, 0}, strength, 0.3F, 0.5F);
+        case Kind::AreaDown:
+            scene.add(lamp, test::emitter(strength));
+            return;
+        case Kind::AreaBothSides:
+            scene.add(lamp, test::emitter(strength, true));
+            return;
+        case Kind::Sun:
+            return scene.sun({0.3F, -1, 0.2F}, strength);
+    }
+}
+
+struct Drawn {
+    bool emits;
+    LightPathStart start;
+};
+
+Drawn draw(const EmissionSampler& sources, uint64_t index, uint64_t seed = 1) {
+    Sampler sampler = Sampler::sequence(seed, Stage::Test, index);
+    Drawn d;
+    d.emits = sources.sample(sampler, d.start);
+    return d;
+}
+
+// Each from a sequence of its own: chi-squared tests expect independent samples.
+Drawn drawIndependently(const EmissionSampler& sources, uint64_t i) { return draw(sources, 0, i); }
+
+constexpr int kTests = 20;  // chi-squared tests in this file
+
+void checkDirections(Kind kind, bool contained) {
+    SceneBuilder builder;
+    addCasters(builder);
+    if (contained) addContainingCaster(builder);
+    addLight(builder, kind);
+    const auto scene = builder.build();
+    const EmissionSampler sources(*scene, test::allLights(*scene), true);
+    uint64_t i = 0;
+    const auto result = test::chiSquaredOnSphere(
+        {24, 24, 12, 100'000},
+        [&]() -> std::optional<Vec3> {
+            const Drawn d = drawIndependently(sources, i++);
+            return d.emits ? std::optional(d.start.ray.direction) : std::nullopt;
+        },
+        [&](Vec3 direction) -> double {
+            // The speck shines down, and half of what a two-sided one emits goes up.
+            const bool up = kind == Kind::AreaBothSides && direction.y > 0;
+            const float share = kind == Kind::AreaBothSides ? 0.5F : 1;
+            const auto d = sources.directionDensities(0, kLight, {0, up ? 1 : -1, 0}, direction);
+            return d.whole > 0 ? share * d.mixture : 0;
+        });
+    CHECK(result.accepted(kTests));
+}
+
+}  // namespace
+
+TEST_CASE("directions from a light have the density of its mixture") {
+    for (const Kind kind : {Kind::Point, Kind::Spot, Kind::AreaDown, Kind::AreaBothSides})
+        for (const bool contained : {false, true}) {
+            CAPTURE(static_cast<int>(kind));
+            CAPTURE(contained);
+            checkDirections(kind, contained);
+        }
+}
+
+TEST_CASE("rays of a directional light have the density of its mixture of discs") {
+    SceneBuilder builder;
+    addCasters(builder);
+    builder.add(test::plate({0, 0, 0}, 3), test::lambert(Rgb(0.5F)));
+    addLight(builder, Kind::Sun);
+    const auto scene = builder.build();
+    const EmissionSampler sources(*scene, test::allLights(*scene), true);
+    const Sphere whole = scene->boundingSphere();
+    const Frame frame(glm::normalize(Vec3(0.3F, -1, 0.2F)));
+    const double side = 2 * whole.radius;
+    uint64_t i = 0;
+    const auto result = test::chiSquaredOnSquare(
+        {24, 24, 12, 100'000},
+        [&]() -> std::optional<Vec2> {
+            const Drawn d = drawIndependently(sources, i++);
+            if (!d.emits) return std::nullopt;
+            const Vec3 local = frame.toLocal(d.start.ray.origin - whole.centre);
+            return Vec2(local) / (2 * whole.radius) + Vec2(0.5F);
+        },
+        [&](double x, double y) -> double {
+            const Vec3 p = whole.centre + frame.toWorld(Vec3(static_cast<float>((x - 0.5) * side),
+                                                             static_cast<float>((y - 0.5) * side), 0));
+            const auto d = sources.discDensities(0, p);
+            return d.whole > 0 ? d.mixture * side * side : 0;
+        });
+    CHECK(result.accepted(kTests));
+}
+
+TEST_CASE("no path weighs more than the whole emission's share allows") {
+    for (const Kind kind : kKinds)
+        for (const bool contained : {false, true}) {
+            CAPTURE(static_cast<int>(kind));
+            SceneBuilder builder;
+            addCasters(builder);
+            if (contained) addContainingCaster(builder);
+            addLight(builder, kind);
+            const auto scene = builder.build();
+            const EmissionSampler sources(*scene, test::allLights(*scene), true);
+            float most = 0;
+            for (uint64_t i = 0; i < 50'000; ++i) {
+                const Drawn d = draw(sources, i);
+                if (d.emits) most = std::max(most, d.start.aimWeight);
+            }
+            CHECK(most > 0.1F);
+            CHECK(most <= 1.0001F / kWholeEmissionShare);
+        }
+}
+
+TEST_CASE("the mean power of a path is the lights' total power, aimed or not") {
+    const Mesh lamp = test::plate(kLight, 0.4F, false);
+    for (const Kind kind : kKinds)
+        for (const bool aim : {false, true}) {
+            CAPTURE(static_cast<int>(kind));
+            CAPTURE(aim);
+            SceneBuilder builder;
+            addCasters(builder);
+            addLight(builder, kind, lamp);
+            const auto scene = builder.build();
+            const EmissionSampler sources(*scene, test::allLights(*scene), aim);
+            test::Mean power;
+            for (uint64_t i = 0; i < 100'000; ++i) {
+                const Drawn d = draw(sources, i);
+                power.add(d.emits ? d.start.power.y : 0);
+            }
+            CHECK(power.value() > 0);
+            CHECK(power.agrees(sources.totalPower().y));
+        }
+}
+
+TEST_CASE("the sun gives a caster whose bounds reach beyond the scene's disc nothing from beyond it") {
+    SceneBuilder builder;
+    builder.add(test::quad({-5, 0, 0.5F}, {5, 0, 0.5F}, {5, 0, -0.5F}, {-5, 0, -0.5F}), test::lambert(Rgb(0.5F)));
+    builder.add(test::plate({4.5F, 0, 0}, 0.5F), test::metal(0));
+    builder.sun({0, -1, 0}, Rgb(1));
+    const auto scene = builder.build();
+    const EmissionSampler sources(*scene, test::allLights(*scene), true);
+    const Sphere disc = scene->boundingSphere();
+    int inCaster = 0;
+    for (uint64_t i = 0; i < 10'000; ++i) {
+        const Drawn d = draw(sources, i);
+        if (!d.emits) continue;
+        const Vec2 offset(d.start.ray.origin.x - disc.centre.x, d.start.ray.origin.z - disc.centre.z);
+        CHECK(glm::length(offset) <= disc.radius * 1.00001F);
+        inCaster += offset.x > 4 ? 1 : 0;
+    }
+    CHECK(inCaster > 5000);
+}
+
+TEST_CASE("the total power is that of Lambert, of all directions, of the spot's cone and of the sun's disc") {
+    const auto totalOf = [](Kind kind) {
+        SceneBuilder builder;
+        addCasters(builder);
+        addLight(builder, kind, test::plate(kLight, 0.4F, false));
+        const auto scene = builder.build();
+        return EmissionSampler(*scene, test::allLights(*scene), true).totalPower().y /
+               (square(scene->boundingSphere().radius) * kPi);
+    };
+    SceneBuilder casters;
+    addCasters(casters);
+    const float disc = kPi * square(casters.build()->boundingSphere().radius);
+    CHECK(totalOf(Kind::Sun) == doctest::Approx(2));
+    CHECK(totalOf(Kind::Point) * disc == doctest::Approx(2 * 4 * kPi));
+    // 1 - cos within the inner cone, a third of the rest.
+    const double inner = 1 - std::cos(0.3 * kPi / 180), outer = 1 - std::cos(0.5 * kPi / 180);
+    CHECK(totalOf(Kind::NarrowSpot) * disc ==
+          doctest::Approx(2 * 2 * kPi * (inner + (outer - inner) / 3)).epsilon(1e-5));
+    SceneBuilder lamp;
+    lamp.add(test::plate({0, 0, 0}, 0.4F), test::emitter(Rgb(3)));
+    CHECK(lamp.build()->lights()[0].power().x == doctest::Approx(3 * kPi * 0.64F));
+}
+
+TEST_CASE("aiming changes no flux: on a caster, beside it, and by direction") {
+    const Mesh lamp = test::plate(kLight, 0.4F, false);
+    for (const Kind kind : {Kind::Point, Kind::Spot, Kind::AreaDown, Kind::AreaBothSides, Kind::Sun}) {
+        CAPTURE(static_cast<int>(kind));
+        SceneBuilder builder;
+        addCasters(builder);
+        addLight(builder, kind, lamp);
+        const auto scene = builder.build();
+        // Flux through discs on the floor: under the casters, half under one, and beside.
+        const std::array<Vec3, 3> targets = {Vec3(0, 0, 0), Vec3(-1.3F, 0, 0.6F), Vec3(0.2F, 0, -1.6F)};
+        std::array<std::array<test::Mean, 3>, 2> flux;
+        for (const bool aim : {false, true}) {
+            const EmissionSampler sources(*scene, test::allLights(*scene), aim);
+            for (uint64_t i = 0; i < 100'000; ++i) {
+                const Drawn d = draw(sources, i);
+                const Ray& r = d.start.ray;
+                const Vec3 onFloor = r.at(-r.origin.y / r.direction.y);
+                for (size_t t = 0; t < targets.size(); ++t) {
+                    const bool hit = d.emits && r.direction.y < 0 && glm::length(onFloor - targets[t]) < 0.4F;
+                    flux[aim ? 1 : 0][t].add(hit ? d.start.power.y : 0);
+                }
+            }
+        }
+        for (size_t t = 0; t < targets.size(); ++t) {
+            CAPTURE(t);
+            CHECK(flux[0][t].value() > 0);
+            CHECK(test::agree(flux[0][t], flux[1][t]));
+        }
+        // What aiming is for: under the casters, less noise.
+        CHECK(flux[1][0].standardError() < flux[0][0].standardError());
+    }
+}
+
+TEST_CASE("one path in several is aimed at each light's casters, and several lights share the paths by power") {
+    SceneBuilder builder;
+    addCasters(builder);
+    builder.point({0, 2, 0}, Rgb(9));
+    builder.point({0, 3, 1}, Rgb(1));
+    const auto scene = builder.build();
+    const EmissionSampler sources(*scene, test::allLights(*scene), true);
+    std::array<test::Mean, 2> power;
+    std::array<int, 2> paths{};
+    constexpr int kPaths = 100'000;
+    for (uint64_t i = 0; i < kPaths; ++i) {
+        const Drawn d = draw(sources, i);
+        ++paths[d.start.light];
+        for (size_t l = 0; l < 2; ++l) power[l].add(d.start.light == l ? d.start.power.x : 0);
+    }
+    CHECK(paths[0] == doctest::Approx(kPaths * (0.8 * 0.9 + 0.1)).epsilon(0.001));
+    CHECK(power[0].agrees(9 * 4 * kPi));
+    CHECK(power[1].agrees(1 * 4 * kPi));
+}
+
+TEST_CASE("the first points of the sequence lie evenly over a light's directions") {
+    SceneBuilder builder;
+    builder.add(test::plate({0, 0, 0}, 1), test::lambert(Rgb(0.5F)));
+    builder.point({0, 1, 0}, Rgb(1));
+    const auto scene = builder.build();
+    const EmissionSampler sources(*scene, test::allLights(*scene), false);
+    // 256 points of a (0,2)-sequence: one in each of 16 x 16 cells of equal solid angle.
+    std::array<int, 256> cells{};
+    for (uint64_t i = 0; i < 256; ++i) {
+        const Vec3 d = draw(sources, i).start.ray.direction;
+        const float turn = std::atan2(d.y, d.x) / (2 * kPi);
+        const int row = static_cast<int>(8 * (1 - d.z)), column = static_cast<int>(16 * (turn < 0 ? turn + 1 : turn));
+        ++cells[static_cast<size_t>(16 * std::min(row, 15) + std::min(column, 15))];
+    }
+    CHECK(std::count(cells.begin(), cells.end(), 1) >= 250);  // rounding may move a few over a cell's edge
+}
+
+TEST_CASE("a path's further numbers start at the same dimension for every light") {
+    for (const Kind kind : kKinds) {
+        SceneBuilder builder;
+        addCasters(builder);
+        addLight(builder, kind);
+        const auto scene = builder.build();
+        const EmissionSampler sources(*scene, test::allLights(*scene), false);
+        Sampler sampler = Sampler::sequence(1, Stage::Test, 17), fresh = sampler;
+        LightPathStart start;
+        REQUIRE(sources.sample(sampler, start));
+        fresh.skipTo(6);
+        CHECK(sampler.next() == fresh.next());
+    }
+}
+
+TEST_CASE("paths that start within a solid know it, and others do not") {
+    const auto mediaOf = [](auto addLightTo) {
+        SceneBuilder builder;
+        builder.add(test::box({-1, -1, -1}, {1, 1, 1}), test::glass(1.5F));
+        Mesh& water = builder.add(test::plate({8, 0, 0}, 1), test::glass(1.33F));
+        water.openEdges = 4;
+        addLightTo(builder);
+        const auto scene = builder.build();
+        const EmissionSampler sources(*scene, test::allLights(*scene), false);
+        return draw(sources, 3).start.media;
+    };
+    const auto lampAt = [](Vec3 p) {
+        return [p](SceneBuilder& b) { b.add(test::plate(p, 0.1F, false), test::emitter(Rgb(1))); };
+    };
+    const auto pointAt = [](Vec3 p) { return [p](SceneBuilder& b) { b.point(p, Rgb(1)); }; };
+    for (const Vec3 inside : {Vec3(0, 0, 0), Vec3(-0.9F, 0.8F, 0.8F)}) {
+        CHECK(mediaOf(lampAt(inside)).contains(1));
+        CHECK(mediaOf(pointAt(inside)).contains(1));
+        CHECK(mediaOf(pointAt(inside)).size() == 1);
+    }
+    for (const Vec3 outside : {Vec3(0, 1.5F, 0), Vec3(2, 0, 0), Vec3(8, 0.5F, 0)}) {
+        CHECK(mediaOf(lampAt(outside)).size() == 0);
+        CHECK(mediaOf(pointAt(outside)).size() == 0);
+    }
+    // Below an open sheet is inside.
+    CHECK(mediaOf(lampAt({8, -3, 0})).contains(2));
+    CHECK(mediaOf(pointAt({8, -3, 0})).contains(2));
+    CHECK(mediaOf([](SceneBuilder& b) { b.sun({0, -1, 0}, Rgb(1)); }).size() == 0);
+}
+
+TEST_CASE("an emission without any light is refused") {
+    SceneBuilder builder;
+    builder.add(test::plate({0, 0, 0}, 1), test::lambert(Rgb(0.5F)));
+    builder.point({0, 1, 0}, Rgb(1));
+    const auto scene = builder.build();
+    CHECK_THROWS_AS(EmissionSampler(*scene, {false}, true), Error);
+}
