@@ -1,0 +1,276 @@
+#include "passes/eye_tracer.h"
+
+#include <mutex>
+
+#include "sampling/mis.h"
+
+namespace lsde {
+
+namespace {
+
+constexpr int kTile = 16;  // pixels
+
+}  // namespace
+
+struct EyePath {
+    PathState state;
+    EyeWalkClass walk;  // events so far, as the owners see them
+    EyePathState mask;  // events so far, as the filters see them
+    Sampler sampler;
+    int splits = 0;         // interfaces that may still be split
+    int depth = 0;          // events so far
+    float misPdf = 0;       // 1/sr with which the last non-delta vertex drew this direction
+    float travelled = 0;    // m since the last vertex that was not passed straight
+    float width = 0;        // m: short side of the pixel's footprint at the ray's origin
+    float spread = 0;       // its growth per metre
+    bool fresh = true;      // nothing met yet
+    bool mayBranch = true;  // has not gone on in several directions yet
+    bool lastDelta = true;  // the last bend, or the camera itself
+    bool metDiffuse = false;
+};
+
+struct EyeScratch {
+    WalkScratch walk;
+    GatherScratch gather;
+    std::vector<EyePath> branches;
+    SampleSums sums;
+    EyeCounters counters;
+};
+
+EyeTracer::EyeTracer(const Scene& scene, const Camera& camera, const LightSampler& lights, const RenderLayers& layers,
+                     const PhotonGather* photons, const EyeSettings& settings, uint64_t seed)
+    : scene_(scene),
+      camera_(camera),
+      lights_(lights),
+      layers_(layers),
+      photons_(photons),
+      settings_(settings),
+      seed_(seed),
+      cameraMedia_(scene.mediaAt(camera.description().position)) {}
+
+void EyeTracer::render(Film& film, uint64_t begin, uint64_t end, RunContext& run, EyeCounters& counters) const {
+    const int tilesX = (film.width() + kTile - 1) / kTile, tilesY = (film.height() + kTile - 1) / kTile;
+    std::mutex mutex;
+    run.pool.forEach(static_cast<size_t>(tilesX) * static_cast<size_t>(tilesY), [&](size_t tile) {
+        run.checkInterrupt();
+        EyeScratch scratch;
+        const int x0 = static_cast<int>(tile % static_cast<size_t>(tilesX)) * kTile;
+        const int y0 = static_cast<int>(tile / static_cast<size_t>(tilesX)) * kTile;
+        for (int y = y0; y < std::min(y0 + kTile, film.height()); ++y)
+            for (int x = x0; x < std::min(x0 + kTile, film.width()); ++x)
+                for (uint64_t i = begin; i < end; ++i) {
+                    samplePixel(camera_.filmX() + x, camera_.filmY() + y, i, scratch);
+                    scratch.sums.addTo(film, x, y);
+                }
+        const std::scoped_lock lock(mutex);
+        counters.rays += scratch.walk.rays;
+        counters.notFinite += scratch.sums.notFinite;
+        counters.gathers += scratch.counters.gathers;
+        counters.gathered += scratch.counters.gathered;
+    });
+}
+
+void EyeTracer::samplePixel(int x, int y, uint64_t index, EyeScratch& scratch) const {
+    EyePath path;
+    path.sampler = Sampler::pixel(seed_, settings_.stage, static_cast<uint32_t>(x), static_cast<uint32_t>(y), index);
+    const Vec2 inPixel = path.sampler.next2D();
+    const bool lens = camera_.description().kind == CameraKind::ThinLens;
+    const CameraRay ray = camera_.ray(Vec2(x, y) + inPixel, lens ? path.sampler.next2D() : Vec2(0));
+    path.state.ray = ray.ray;
+    path.state.media = cameraMedia_;
+    path.mask = layers_.filter().eye();
+    path.splits = settings_.splits;
+    path.width = ray.width;
+    path.spread = ray.spread;
+    scratch.branches.clear();
+    scratch.branches.push_back(path);
+    while (!scratch.branches.empty()) {
+        EyePath next = scratch.branches.back();
+        scratch.branches.pop_back();
+        follow(next, scratch);
+    }
+}
+
+void EyeTracer::follow(EyePath& path, EyeScratch& scratch) const {
+    Vertex v;
+    while (advance(scene_, path.state, v, scratch.walk)) {
+        path.travelled += v.distance;
+        path.width += path.spread * v.distance;
+        if (path.fresh) recordFirst(v, scratch.sums);
+        path.fresh = false;
+        addEmission(v, path, scratch);
+        if (settings_.maxDepth > 0 && path.depth >= settings_.maxDepth) return;
+        if (hasDiffuseLobe(v.bsdf) || hasGlossyLobe(v.bsdf)) {
+            addDirect(v, path, scratch);
+            if (photons_ != nullptr) addPhotons(v, path, scratch);
+        }
+        if (!split(v, path, scratch)) return;
+    }
+}
+
+void EyeTracer::recordFirst(const Vertex& v, SampleSums& sums) const {
+    sums.layer[static_cast<size_t>(layers_.albedo())] = albedo(v.bsdf);
+    sums.layer[static_cast<size_t>(layers_.normal())] = v.wo.z < 0 ? -v.surface.ns : v.surface.ns;
+    sums.layer[static_cast<size_t>(layers_.depth())] = Rgb(v.distance);
+}
+
+void EyeTracer::addEmission(const Vertex& v, const EyePath& path, EyeScratch& scratch) const {
+    const int light = scene_.meshes()[v.surface.mesh].light;
+    if (light < 0 || !lights_.selected(static_cast<size_t>(light))) return;
+    const Rgb radiance = scene_.emission(v.surface, v.woWorld);
+    if (isBlack(radiance)) return;
+    auto hit = path.walk.emitterHit();
+    if (photons_ == nullptr) hit = path.lastDelta ? EyeWalkClass::EmitterHit::Full : EyeWalkClass::EmitterHit::Mis;
+    if (hit == EyeWalkClass::EmitterHit::Dropped) return;
+    float weight = 1;
+    if (hit == EyeWalkClass::EmitterHit::Mis)
+        weight = powerHeuristic(path.misPdf, directLightPdf(scene_, lights_, v.surface, v.woWorld, path.travelled));
+    scratch.sums.contribute(layers_, path.state.throughput * radiance * weight, layers_.filter().light(), path.mask);
+}
+
+void EyeTracer::addDirect(const Vertex& v, EyePath& path, EyeScratch& scratch) const {
+    DirectLightQuery query;
+    query.glossy = photons_ == nullptr || path.walk.samplesLight(glossyClass(v.bsdf));
+    EyePathState diffuse = path.mask, glossy = path.mask;
+    layers_.filter().prepend(diffuse, Event::Diffuse);
+    layers_.filter().prepend(glossy, Event::Glossy);
+    // Drawn even where nothing can count, so that filters never change the numbers of what follows.
+    const Vec2 u = path.sampler.next2D();
+    const float uLight = path.sampler.next();
+    LightPathState light = layers_.filter().light();
+    if (layers_.hasOnly() && !scene_.hasThinWalls()) {
+        query.diffuse &= layers_.counts(layers_.filter().accepted(light, diffuse));
+        query.glossy &= layers_.counts(layers_.filter().accepted(light, glossy));
+    }
+    if (!query.diffuse && !query.glossy) return;
+    const DirectLight d = sampleDirectLight(scene_, lights_, v, query, uLight, u, scratch.walk);
+    for (int i = 0; i < d.straightPassages; ++i) layers_.filter().append(light, Event::Specular);
+    if (!isBlack(d.diffuse)) scratch.sums.contribute(layers_, path.state.throughput * d.diffuse, light, diffuse);
+    if (!isBlack(d.glossy)) scratch.sums.contribute(layers_, path.state.throughput * d.glossy, light, glossy);
+}
+
+void EyeTracer::addPhotons(const Vertex& v, const EyePath& path, EyeScratch& scratch) const {
+    if (!scene_.meshes()[v.surface.mesh].receiver) return;
+    const bool diffuse = hasDiffuseLobe(v.bsdf), glossy = hasGlossyLobe(v.bsdf);
+    const bool glossyIsWide = glossy && glossyClass(v.bsdf) == VertexClass::Diffuse;
+    const bool glossyGathers = glossy && !glossyIsWide && path.walk.gathers(VertexClass::Glossy);
+    if (!diffuse && !glossyIsWide && !glossyGathers) return;
+    EyePathState diffuseMask = path.mask, glossyMask = path.mask;
+    layers_.filter().prepend(diffuseMask, Event::Diffuse);
+    layers_.filter().prepend(glossyMask, Event::Glossy);
+    if (!layers_.photonsCount(diffuseMask) && !layers_.photonsCount(glossyMask)) return;
+
+    PhotonGatherQuery query;
+    query.point = {v.surface.position, v.surface.ng, v.surface.ns, path.metDiffuse ? 0 : path.width};
+    query.sideNormal = v.sideNormal();
+    query.medium = v.medium;
+    query.glossyOnly = !diffuse && !glossyIsWide;
+    query.glossyFromAll = glossyIsWide;
+    query.glossyFromFlagged = glossyGathers;
+    const GatheredLight& light = photons_->gather(query, v.bsdf, v.frame, v.wo, scratch.gather);
+    ++scratch.counters.gathers;
+    scratch.counters.gathered += light.photons;
+    for (const GatheredPaths& g : light.paths) {
+        const Rgb fromDiffuse = path.state.throughput * g.diffuse, fromGlossy = path.state.throughput * g.glossy;
+        if (g.path.overflowed()) {
+            if (layers_.hasOnly()) continue;
+            scratch.sums.layer[0] += fromDiffuse + fromGlossy;
+            scratch.sums.layer[static_cast<size_t>(layers_.unclassified())] += fromDiffuse + fromGlossy;
+            continue;
+        }
+        const LightPathState state = layers_.filter().stateOf(g.path);
+        if (!isBlack(fromDiffuse)) scratch.sums.contribute(layers_, fromDiffuse, state, diffuseMask);
+        if (!isBlack(fromGlossy)) scratch.sums.contribute(layers_, fromGlossy, state, glossyMask);
+    }
+}
+
+// Goes on from the vertex: all delta lobes as branches while there are splits left, else one sampled lobe. False: the
+// path ends (its branches are on the stack).
+bool EyeTracer::split(const Vertex& v, EyePath& path, EyeScratch& scratch) const {
+    BsdfSample sample;
+    if (!hasDelta(v.bsdf)) return bounce(v, path, scratch);
+    if (path.splits == 0 || std::holds_alternative<MirrorBsdf>(v.bsdf)) {
+        const float uLobe = path.sampler.next();
+        return sampleBsdf(v.bsdf, v.wo, uLobe, path.sampler.next2D(), sample) && step(v, sample, path);
+    }
+    const DeltaLobes lobes = deltaLobes(v.bsdf, v.wo);
+    const bool others = hasDiffuseLobe(v.bsdf) || hasGlossyLobe(v.bsdf);
+    const float weight = maxComponent(path.state.throughput);
+    float least = kInfinity;
+    for (int i = 0; i < lobes.count; ++i)
+        least = std::min(least, maxComponent(lobes.lobe[static_cast<size_t>(i)].weight));
+    if (weight * least < settings_.splitThreshold && lobes.count + (others ? 1 : 0) > 1) {
+        const float uLobe = path.sampler.next();
+        return sampleBsdf(v.bsdf, v.wo, uLobe, path.sampler.next2D(), sample) && step(v, sample, path);
+    }
+    // Branches after the first have numbers of their own; the path itself goes on with the last lobe.
+    const int last = lobes.count - 1;
+    for (int i = 0; i < (others ? lobes.count : last); ++i) {
+        EyePath branch = path;
+        branch.sampler = path.sampler.fork(static_cast<uint32_t>(i));
+        --branch.splits;
+        if (step(v, lobes.lobe[static_cast<size_t>(i)], branch)) scratch.branches.push_back(branch);
+    }
+    if (!others) {
+        --path.splits;
+        return step(v, lobes.lobe[static_cast<size_t>(last)], path);
+    }
+    const float uLobe = path.sampler.next();
+    return sampleNonDelta(v.bsdf, v.wo, uLobe, path.sampler.next2D(), sample) && step(v, sample, path);
+}
+
+// Goes on from a vertex without delta lobes: at the first one of a path in several directions, since it is there that
+// most of the variance of indirect light arises. Their numbers are one point shifted by even steps (Cranley & Patterson
+// 1976), so that they lie apart.
+bool EyeTracer::bounce(const Vertex& v, EyePath& path, EyeScratch& scratch) const {
+    const float uLobe = path.sampler.next();
+    const Vec2 u = path.sampler.next2D();
+    const int branches = path.mayBranch ? settings_.indirectBranches : 1;
+    path.mayBranch = false;
+    path.state.throughput /= static_cast<float>(branches);
+    BsdfSample sample;
+    for (int i = 1; i < branches; ++i) {
+        EyePath branch = path;
+        branch.sampler = path.sampler.fork(static_cast<uint32_t>(i));
+        const float x = u.x + static_cast<float>(i) / static_cast<float>(branches);
+        if (sampleBsdf(v.bsdf, v.wo, uLobe, {x < 1 ? x : x - 1, u.y}, sample) && step(v, sample, branch))
+            scratch.branches.push_back(branch);
+    }
+    return sampleBsdf(v.bsdf, v.wo, uLobe, u, sample) && step(v, sample, path);
+}
+
+bool EyeTracer::step(const Vertex& v, const BsdfSample& sample, EyePath& path) const {
+    if (!scatter(v, sample, Quantity::Radiance, path.state)) return false;
+    const VertexClass c = classOf(v.bsdf, sample);
+    path.walk.pass(c);
+    layers_.filter().prepend(path.mask, sample.event);
+    if (!layers_.alive(path.mask)) return false;
+    ++path.depth;
+    if (c != VertexClass::Straight) {
+        path.travelled = 0;
+        path.lastDelta = sample.delta;
+    }
+    const bool again = path.metDiffuse;
+    if (!sample.delta) {
+        path.splits = settings_.splits;
+        path.misPdf = sample.pdfW;
+        // Weights must sum to one with those of light sampling, which knows of no split.
+        if (hasDelta(v.bsdf)) {
+            const BsdfEval f = evalBsdf(v.bsdf, v.wo, sample.wi);
+            path.misPdf = sample.event == Event::Diffuse ? f.diffuse.pdfW : f.glossy.pdfW;
+        }
+        path.metDiffuse |= c == VertexClass::Diffuse;
+    }
+    // Russian roulette: by the lobe's weight from the second diffuse event on, which keeps the throughput even; by the
+    // throughput itself only where little is left of it; and a little for what a mirror or glass may keep for ever.
+    float keep = 1;
+    if (!sample.delta && again) keep = std::min(1.0F, maxComponent(sample.weight));
+    keep = std::min(keep, maxComponent(path.state.throughput) / settings_.rouletteThreshold);
+    if (path.depth > settings_.freeDepth) keep = std::min(keep, 0.95F);
+    if (keep >= 1) return true;
+    if (path.sampler.next() >= keep) return false;
+    path.state.throughput /= keep;
+    return true;
+}
+
+}  // namespace lsde

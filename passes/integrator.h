@@ -1,0 +1,49 @@
+// The interface of the methods that make pictures (passes/integrators/).
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/run.h"
+#include "passes/gather.h"
+#include "passes/layers.h"
+#include "scene/scene.h"
+#include "transport/direct_light.h"
+
+namespace lsde {
+
+// What an integrator is made from. References outlive it.
+struct IntegratorInput {
+    const Scene& scene;
+    const Camera& camera;
+    const RenderLayers& layers;
+    const std::vector<bool>& lights;        // selected, by index
+    const PhotonGather* photons = nullptr;  // for methods that use a map
+    uint64_t seed = 0;
+};
+
+class Integrator {
+  public:
+    virtual ~Integrator() = default;
+    // Samples [begin, end) of every pixel (or as many light paths as there are pixels, each).
+    virtual void render(uint64_t begin, uint64_t end, RunContext& run) = 0;
+    // The mean of `samples` samples.
+    virtual RgbImage develop(int layer, uint64_t samples) const = 0;
+    virtual uint64_t notFinite() const = 0;
+};
+
+struct IntegratorEntry {
+    std::string name;
+    std::string description;
+    std::string coverage;  // Heckbert expression of the paths that it makes (under lights with area and under delta
+                           // lights alike)
+    bool usesPhotons = false;
+    std::function<std::unique_ptr<Integrator>(const IntegratorInput&)> make;
+    // Paths of this scene that the method cannot make, as a line to warn with; empty: none.
+    std::function<std::string(const Scene&)> cannotMake;
+};
+
+}  // namespace lsde

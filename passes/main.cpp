@@ -1,0 +1,484 @@
+// The command line: parses, calls the stages, prints. Everything else is in the library.
+#include <fmt/format.h>
+#include <signal.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "image/png.h"
+#include "passes/compare.h"
+#include "passes/emit.h"
+#include "passes/info.h"
+#include "passes/integrators/registry.h"
+#include "passes/progress_bar.h"
+#include "passes/render.h"
+#include "scene/gltf.h"
+#include "store/file.h"
+
+namespace {
+
+using namespace lsde;
+using Json = nlohmann::json;
+namespace fs = std::filesystem;
+
+RunContext* interruptible = nullptr;  // what the signal handler may touch
+
+extern "C" void onSignal(int signal) {
+    // A second signal ends the program at once.
+    if (interruptible == nullptr || interruptible->interruptSignal != 0) _exit(128 + signal);
+    interruptible->interruptSignal = signal;
+}
+
+struct CommonOptions {
+    int threads = 0;
+    uint64_t seed = 0;
+    bool quiet = false;
+    std::string logLevel = "info";
+    bool force = false;
+    std::string json;
+    bool allowOutside = false;
+    std::string sceneName;
+};
+
+void addCommon(CLI::App& app, CommonOptions& o, bool scene) {
+    app.add_option("--threads", o.threads, "threads (0: all processors)")
+        ->check(CLI::Range(0, 4096))
+        ->capture_default_str();
+    app.add_option("--seed", o.seed, "seed of all random numbers")->capture_default_str();
+    app.add_flag("--quiet", o.quiet, "warnings and errors only, no progress bar");
+    app.add_option("--log-level", o.logLevel, "debug, info or warning")
+        ->check(CLI::IsMember({"debug", "info", "warning"}))
+        ->capture_default_str();
+    app.add_flag("--force", o.force, "overwrite outputs that exist");
+    app.add_option("--json", o.json, "write the figures of the run as JSON to FILE (-: standard output)")
+        ->type_name("FILE");
+    if (!scene) return;
+    app.add_flag("--allow-outside", o.allowOutside, "take buffers and images from outside the scene's folder");
+    app.add_option("--scene", o.sceneName, "scene within the file, by name or index (default: the file's)")
+        ->type_name("NAME");
+}
+
+void setUpLog(RunContext& run, const CommonOptions& o, ProgressBar& bar) {
+    auto logger = std::make_shared<spdlog::logger>("lsde", std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
+    logger->set_pattern("%^%l%$: %v");
+    logger->set_level(o.quiet || o.logLevel == "warning" ? spdlog::level::warn
+                      : o.logLevel == "debug"            ? spdlog::level::debug
+                                                         : spdlog::level::info);
+    run.onLog = [logger, &bar](LogLevel level, const std::string& line) {
+        bar.clear();
+        logger->log(level == LogLevel::Debug  ? spdlog::level::debug
+                    : level == LogLevel::Info ? spdlog::level::info
+                                              : spdlog::level::warn,
+                    line);
+    };
+    if (!o.quiet) run.onProgress = [&bar](const Progress& p) { bar.show(p); };
+}
+
+Json runFigures(const RunContext& run) {
+    Json j;
+    j["wallSeconds"] = wallSeconds();
+    j["cpuSeconds"] = cpuSeconds();
+    j["peakMemoryBytes"] = peakMemoryBytes();
+    j["rays"] = run.rays.load();
+    j["threads"] = run.pool.threads();
+    j["phases"] = Json::array();
+    for (const PhaseTime& p : run.phases)
+        j["phases"].push_back({{"name", p.name}, {"wallSeconds", p.wall}, {"cpuSeconds", p.cpu}});
+    j["warnings"] = run.warnings();
+    return j;
+}
+
+void writeJson(const std::string& target, const Json& json) {
+    if (target.empty()) return;
+    if (target == "-")
+        std::cout << json.dump(2) << '\n';
+    else
+        writeFileAtomically(target, json.dump(2) + "\n");
+}
+
+std::unique_ptr<Scene> loadScene(const fs::path& file, const CommonOptions& o, RunContext& run) {
+    const PhaseTimer timer(run, "load scene");
+    GltfOptions options;
+    options.allowOutside = o.allowOutside;
+    options.scene = o.sceneName;
+    auto scene = std::make_unique<Scene>(loadGltf(file, options));
+    for (const std::string& w : scene->description().warnings) run.warn(fmt::format("{}: {}", file.string(), w));
+    return scene;
+}
+
+void checkOutputs(const std::vector<fs::path>& outputs, const CommonOptions& o) {
+    for (const fs::path& p : outputs)
+        if (!p.empty() && p != "-") checkOutput(p, o.force);
+}
+
+// ---------------------------------------------------------------------------------------------------------------- emit
+
+struct EmitOptions {
+    fs::path scene, output;
+    EmitSettings settings;
+    std::string store = "caustic", shard, lights;
+    bool noAim = false, resume = false;
+};
+
+std::vector<std::string> splitNames(const std::string& list) {
+    std::vector<std::string> out;
+    std::string::size_type begin = 0;
+    while (!list.empty() && begin <= list.size()) {
+        const auto end = std::min(list.find(',', begin), list.size());
+        out.push_back(list.substr(begin, end - begin));
+        begin = end + 1;
+    }
+    return out;
+}
+
+IndexRange parseShard(const std::string& text, uint64_t photons) {
+    unsigned long long i = 0, n = 0;
+    char end = 0;
+    if (std::sscanf(text.c_str(), "%llu/%llu%c", &i, &n, &end) != 2 || n == 0 || i == 0 || i > n)
+        throw UsageError(fmt::format("--shard {}: expected I/N with 1 <= I <= N", text));
+    return shardRange(photons, i, n);
+}
+
+Json emitFigures(const PhotonMap& map, const fs::path& file) {
+    Json j;
+    j["photonsEmitted"] = map.header.emittedPaths();
+    for (int c = 0; c < kPhotonClasses; ++c) {
+        const auto k = static_cast<PhotonClass>(c);
+        j["photonsStored"][std::string(name(k))] = map.photons(k).count;
+        j["photonsLanded"][std::string(name(k))] = map.header.ledger.landed[static_cast<size_t>(c)];
+    }
+    j["absorbedWatts"] = map.header.ledger[LedgerColumn::AbsorbedSurface].toDouble(1) /
+                         std::max<double>(1, static_cast<double>(map.header.emittedPaths()));
+    j["maxAimWeight"] = map.header.ledger.maxAimWeight;
+    j["bytes"] = fs::file_size(file);
+    return j;
+}
+
+// What is still to be emitted: all, or what an interrupted emission left.
+std::optional<IndexRange> resumeFrom(const EmitOptions& o, IndexRange wanted, RunContext& run) {
+    if (!o.resume || !fs::exists(o.output)) return wanted;
+    const PhotonMap done = readPhotonMap(o.output, run);
+    const auto& ranges = done.header.ranges;
+    if (ranges.size() != 1 || ranges[0].begin != wanted.begin || ranges[0].end > wanted.end)
+        throw Error(fmt::format("{}: cannot be resumed: holds other light paths than the beginning of [{}, {})",
+                                o.output.string(), wanted.begin, wanted.end));
+    if (ranges[0].end == wanted.end) return {};
+    run.info(fmt::format("resuming after {} of {} paths", ranges[0].end - wanted.begin, wanted.end - wanted.begin));
+    return IndexRange{ranges[0].end, wanted.end};
+}
+
+int runEmit(EmitOptions& o, const CommonOptions& common, RunContext& run) {
+    checkOutputs({o.resume ? fs::path() : o.output, common.json}, common);
+    o.settings.storeAll = o.store == "all";
+    o.settings.aim = !o.noAim;
+    o.settings.lights = splitNames(o.lights);
+    const auto scene = loadScene(o.scene, common, run);
+    if (scene->lights().empty())
+        throw Error(
+            fmt::format("{}: no light in the scene: expected an emissive material or a light of KHR_lights_punctual",
+                        o.scene.string()));
+    const IndexRange wanted =
+        o.shard.empty() ? IndexRange{0, o.settings.photons} : parseShard(o.shard, o.settings.photons);
+    const auto range = resumeFrom(o, wanted, run);
+    if (!range) {
+        run.info(fmt::format("{}: already complete", o.output.string()));
+        return 0;
+    }
+    o.settings.range = *range;
+    bool interrupted = false;
+    PhotonMap map = emitPhotons(*scene, o.settings, run, &interrupted);
+    if (range->begin != wanted.begin) map = mergePhotonMaps(readPhotonMap(o.output, run), std::move(map), run);
+    {
+        const PhaseTimer timer(run, "write map");
+        writePhotonMap(o.output, map, run);
+    }
+    if (const std::string why = whyNoCaustics(*scene, &map.header.ledger); !why.empty()) run.warn(why);
+    Json j = runFigures(run);
+    j.update(emitFigures(map, o.output));
+    writeJson(common.json, j);
+    run.info(fmt::format("{}: {} paths, {} caustic photons, {} bytes, {:.1f} CPU s", o.output.string(),
+                         map.header.emittedPaths(), map.photons(PhotonClass::Caustic).count, fs::file_size(o.output),
+                         cpuSeconds()));
+    if (interrupted) throw Interrupted(run.interruptSignal);
+    return 0;
+}
+
+// -------------------------------------------------------------------------------------------------------------- render
+
+struct RenderOptions {
+    fs::path scene, output;
+    RenderSettings settings;
+    bool noCache = false;
+    uint64_t photons = 0, spp = 0;
+    double wall = 0, cpu = 0;
+    std::string integrator = "photon", size, crop, index = "kd", only, lights;
+    std::vector<std::string> paths;
+};
+
+std::vector<int> parseInts(const std::string& option, const std::string& text, char separator, size_t count,
+                           const char* expected) {
+    std::vector<int> out;
+    std::string::size_type begin = 0;
+    while (begin <= text.size()) {
+        const auto end = std::min(text.find(separator, begin), text.size());
+        const std::string part = text.substr(begin, end - begin);
+        char* stop = nullptr;
+        const long value = std::strtol(part.c_str(), &stop, 10);
+        if (part.empty() || *stop != 0 || value < 0 || value > 65536)
+            throw UsageError(fmt::format("{} {}: expected {}", option, text, expected));
+        out.push_back(static_cast<int>(value));
+        begin = end + 1;
+    }
+    if (out.size() != count) throw UsageError(fmt::format("{} {}: expected {}", option, text, expected));
+    return out;
+}
+
+void settle(RenderOptions& o, const CLI::App& app) {
+    RenderSettings& s = o.settings;
+    s.cache = !o.noCache;
+    if (app.count("--photons") > 0) s.photons = o.photons;
+    if (app.count("--spp") > 0) s.spp = o.spp;
+    if (app.count("--time") > 0) s.wallLimit = o.wall;
+    if (app.count("--cpu-time") > 0) s.cpuLimit = o.cpu;
+    if (!o.size.empty()) {
+        const auto v = parseInts("--size", o.size, 'x', 2, "WxH, each from 1 to 65536");
+        if (v[0] == 0 || v[1] == 0)
+            throw UsageError(fmt::format("--size {}: expected WxH, each from 1 to 65536", o.size));
+        s.size = {v[0], v[1]};
+    }
+    if (!o.crop.empty()) {
+        const auto v = parseInts("--crop", o.crop, ',', 4, "X0,Y0,X1,Y1 in pixels");
+        s.crop = Crop{v[0], v[1], v[2], v[3]};
+    }
+    if (!o.only.empty()) s.only = o.only;
+    s.lights = splitNames(o.lights);
+    s.index = o.index == "flann" ? IndexKind::Flann : IndexKind::Kd;
+    int number = 0;
+    for (const std::string& p : o.paths) s.paths.push_back(parseLayerRequest(p, ++number));
+}
+
+int runRender(RenderOptions& o, const CommonOptions& common, const CLI::App& app, RunContext& run) {
+    settle(o, app);
+    const IntegratorEntry& method = integratorByName(o.integrator);
+    const fs::path png = fs::path(o.output).replace_extension(".png");
+    checkOutputs({o.output, png, common.json}, common);
+    // Expressions are refused before the scene is loaded.
+    const RenderLayers layers(o.settings.paths, o.settings.only);
+    const auto scene = loadScene(o.scene, common, run);
+    const RenderResult r = renderPicture(*scene, method, o.settings, run);
+    {
+        const PhaseTimer timer(run, "write picture");
+        writeExr(o.output, r.image, r.metadata);
+        writePng(png, r.picture);
+    }
+    Json j = runFigures(run);
+    j["samplesPerPixel"] = r.samples;
+    j["photonsEmitted"] = r.photons;
+    j["photonsStored"] = {{"caustic", r.storedPhotons}};
+    if (r.passes > 0) j["progressivePasses"] = r.passes;
+    j["notFinite"] = r.notFinite;
+    if (!r.cachedMap.empty()) j["cachedMap"] = r.cachedMap.string();
+    j["bytes"] = fs::file_size(o.output);
+    writeJson(common.json, j);
+    run.info(fmt::format("{}: {} samples a pixel, {} light paths, {:.1f} CPU s", o.output.string(), r.samples,
+                         r.photons, cpuSeconds()));
+    if (r.interrupted) throw Interrupted(run.interruptSignal);
+    return 0;
+}
+
+void addRender(CLI::App& app, RenderOptions& o) {
+    app.add_option("SCENE", o.scene, "glTF scene (.gltf, .glb)")->required();
+    app.add_option("-o,--output", o.output, "picture (OpenEXR); a tone-mapped PNG is written beside it")->required();
+    app.add_option("--map", o.settings.map, "photon map of this scene (default: emitted, or found in the cache)")
+        ->type_name("MAP.lsmap");
+    app.add_flag("--no-cache", o.noCache, "neither look for the map in the user's cache folder nor keep it there");
+    app.add_flag("--other-scene", o.settings.otherScene, "take a map of another scene");
+    app.add_option("--photons", o.photons, "light paths to emit (default 1000000)")
+        ->check(CLI::PositiveNumber)
+        ->type_name("N");
+    app.add_option("--spp", o.spp, "samples a pixel (default 64)")->check(CLI::PositiveNumber)->type_name("N");
+    app.add_option("--time", o.wall, "wall seconds for the whole run")->check(CLI::PositiveNumber)->type_name("SEC");
+    app.add_option("--cpu-time", o.cpu, "CPU seconds of all threads for the whole run")
+        ->check(CLI::PositiveNumber)
+        ->type_name("SEC");
+    app.add_option("--size", o.size, "picture size in pixels (default: the camera's extras.resolution, else 1280 wide)")
+        ->type_name("WxH");
+    app.add_option("--crop", o.crop, "only these pixels of the picture")->type_name("X0,Y0,X1,Y1");
+    app.add_option("--camera", o.settings.camera,
+                   "camera by name (default: the first; without one, the scene is framed)")
+        ->type_name("NAME");
+    app.add_option("--paths", o.paths,
+                   "Heckbert expression, light first, as a layer of its own: EXPR=NAME (may be repeated)")
+        ->type_name("EXPR[=NAME]");
+    app.add_option("--only", o.only, "render these paths alone")->type_name("EXPR");
+    app.add_option("--lights", o.lights, "only these lights, by name")->type_name("NAME,...");
+    app.add_option("--integrator", o.integrator, "method: photon, path or light")
+        ->capture_default_str()
+        ->type_name("NAME");
+    app.add_option("--progressive", o.settings.progressive, "independent photon passes with shrinking radius")
+        ->check(CLI::PositiveNumber)
+        ->type_name("PASSES");
+    app.add_option("--index", o.index, "photon index: kd or flann")
+        ->check(CLI::IsMember({"kd", "flann"}))
+        ->capture_default_str();
+}
+
+// ------------------------------------------------------------------------------------------------------ the other
+// three
+
+int runMerge(const std::vector<fs::path>& maps, const fs::path& output, const CommonOptions& common, RunContext& run) {
+    checkOutputs({output, common.json}, common);
+    const PhotonMap map = mergePhotonMaps(maps, run);
+    writePhotonMap(output, map, run);
+    Json j = runFigures(run);
+    j.update(emitFigures(map, output));
+    writeJson(common.json, j);
+    run.info(fmt::format("{}: {} of {} paths", output.string(), map.header.emittedPaths(), map.header.totalPaths));
+    return 0;
+}
+
+int runInfo(const fs::path& file, const InfoSettings& settings, const CommonOptions& common, RunContext& run) {
+    checkOutputs({common.json}, common);
+    const InfoResult info = describeFile(file, settings, run);
+    if (common.json.empty())
+        for (const std::string& line : info.lines) std::cout << line << '\n';
+    else
+        writeJson(common.json, *info.json);
+    return 0;
+}
+
+int runCompare(const CompareSettings& settings, const CommonOptions& common, RunContext& run) {
+    checkOutputs({settings.report, common.json}, common);
+    const CompareResult result = comparePass(settings, run);
+    if (common.json != "-")
+        for (const std::string& line : result.lines) std::cout << line << '\n';
+    writeJson(common.json, result.json());
+    for (const std::string& failure : result.failures) std::cerr << "error: " << failure << '\n';
+    return result.failures.empty() ? 0 : 1;
+}
+
+int parseAndRun(int argc, char** argv) {
+    CLI::App app{"lsde: caustics by multi-pass photon mapping"};
+    app.set_version_flag("--version", std::string("lsde ") + LSDE_VERSION);
+    app.require_subcommand(1);
+    app.get_formatter()->column_width(34);
+    CommonOptions common;
+
+    EmitOptions emit;
+    CLI::App* emitCommand = app.add_subcommand("emit", "trace light from the sources into a photon map");
+    emitCommand->add_option("SCENE", emit.scene, "glTF scene (.gltf, .glb)")->required();
+    emitCommand->add_option("-o,--output", emit.output, "photon map")->required()->type_name("MAP.lsmap");
+    emitCommand->add_option("--photons", emit.settings.photons, "light paths of the whole emission, over all shards")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str()
+        ->type_name("N");
+    emitCommand->add_option("--max-depth", emit.settings.maxDepth, "events of a light path")
+        ->check(CLI::Range(1, 1000000))
+        ->capture_default_str()
+        ->type_name("N");
+    emitCommand
+        ->add_option("--store", emit.store, "caustic: L X+ D alone; all: also light that met a D, and direct light")
+        ->check(CLI::IsMember({"caustic", "all"}))
+        ->capture_default_str();
+    emitCommand->add_option("--shard", emit.shard, "emit part I of N of the paths (I from 1)")->type_name("I/N");
+    emitCommand->add_option("--lights", emit.lights, "only these lights, by name")->type_name("NAME,...");
+    emitCommand->add_flag("--no-aim", emit.noAim, "emit in all directions, not towards what bends light");
+    emitCommand->add_flag("--resume", emit.resume, "go on with the map that an interrupted emission left");
+    addCommon(*emitCommand, common, true);
+
+    RenderOptions render, reference;
+    CLI::App* renderCommand = app.add_subcommand("render", "picture of a scene with its caustics");
+    addRender(*renderCommand, render);
+    addCommon(*renderCommand, common, true);
+    CLI::App* referenceCommand = app.add_subcommand("reference", "picture by path tracing, as ground truth");
+    reference.integrator = "path";
+    addRender(*referenceCommand, reference);
+    addCommon(*referenceCommand, common, true);
+
+    CompareSettings compare;
+    CLI::App* compareCommand = app.add_subcommand("compare", "how far apart two pictures are, and where");
+    compareCommand->add_option("IMAGE", compare.image, "picture (OpenEXR)")->required();
+    compareCommand->add_option("REFERENCE", compare.reference, "ground truth (OpenEXR)")->required();
+    compareCommand->add_option("--layer", compare.layer, "layer (default: the picture itself)")->type_name("NAME");
+    std::string compareCrop;
+    compareCommand->add_option("--crop", compareCrop, "only these pixels")->type_name("X0,Y0,X1,Y1");
+    compareCommand->add_option("--report", compare.report, "one self-contained HTML page")->type_name("PAGE.html");
+    compareCommand
+        ->add_option("--fail-above", compare.failAbove,
+                     "exit 1 if this metric is above X (psnr and ssim: below X): mse, relmse, trimmed, smape, psnr, "
+                     "ssim, flip or hdrflip (may be repeated)")
+        ->type_name("METRIC=X");
+    addCommon(*compareCommand, common, false);
+
+    std::vector<fs::path> maps;
+    fs::path merged;
+    CLI::App* mergeCommand = app.add_subcommand("merge", "one map from shards of one emission");
+    mergeCommand->add_option("MAP", maps, "photon maps")->required();
+    mergeCommand->add_option("-o,--output", merged, "photon map")->required()->type_name("MAP.lsmap");
+    addCommon(*mergeCommand, common, false);
+
+    fs::path infoFile;
+    InfoSettings info;
+    CLI::App* infoCommand =
+        app.add_subcommand("info", "what a scene, a map or an image holds, and whether it is sound");
+    infoCommand->add_option("FILE", infoFile, "scene, map or image")->required();
+    bool verify = false;  // info always checks every byte
+    infoCommand->add_flag("--verify", verify, "check every byte (always done)");
+    addCommon(*infoCommand, common, true);
+
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& e) {
+        const int code = app.exit(e, std::cout, std::cerr);
+        return code == 0 ? 0 : 2;
+    }
+    if (!compareCrop.empty()) {
+        const auto v = parseInts("--crop", compareCrop, ',', 4, "X0,Y0,X1,Y1 in pixels");
+        compare.crop = {v[0], v[1], v[2], v[3]};
+    }
+    RunContext run(common.threads, common.seed);
+    interruptible = &run;
+    ProgressBar bar;
+    setUpLog(run, common, bar);
+    if (emitCommand->parsed()) return runEmit(emit, common, run);
+    if (renderCommand->parsed()) return runRender(render, common, *renderCommand, run);
+    if (referenceCommand->parsed()) return runRender(reference, common, *referenceCommand, run);
+    if (compareCommand->parsed()) return runCompare(compare, common, run);
+    if (mergeCommand->parsed()) return runMerge(maps, merged, common, run);
+    info.allowOutside = common.allowOutside;
+    return runInfo(infoFile, info, common, run);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    struct sigaction action {};
+    action.sa_handler = onSignal;
+    sigaction(SIGINT, &action, nullptr);
+    sigaction(SIGTERM, &action, nullptr);
+    signal(SIGXFSZ, SIG_IGN);  // a full quota is an error of the write, not the end of the process
+    guardMappedFiles();
+    int code = 1;
+    try {
+        code = parseAndRun(argc, argv);
+        std::cout.flush();
+        if (!std::cout) throw Error("standard output: cannot be written");
+    } catch (const UsageError& e) {
+        std::cerr << "error: " << e.what() << '\n';
+        code = 2;
+    } catch (const Interrupted& e) {
+        std::cerr << "interrupted\n";
+        code = 128 + e.signal;
+    } catch (const std::bad_alloc&) {
+        std::cerr << "error: out of memory\n";
+    } catch (const std::exception& e) {
+        std::cerr << "error: " << e.what() << '\n';
+    }
+    interruptible = nullptr;
+    return code;
+}

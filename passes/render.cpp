@@ -1,0 +1,256 @@
+#include "passes/render.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "base/error.h"
+#include "base/hash.h"
+#include "passes/clock.h"
+#include "passes/map_source.h"
+#include "passes/picture.h"
+#include "scene/creases.h"
+
+namespace lsde {
+
+namespace {
+
+constexpr uint64_t kDefaultSamples = 64;
+constexpr double kEmissionShare = 0.45;  // of a time limit, where there are caustics
+constexpr uint32_t kPilotRadiusPhotons = 50;
+
+// What ends the camera pass.
+struct SampleLimits {
+    uint64_t begin = 0;             // number of the first sample
+    std::optional<uint64_t> count;  // samples a pixel
+    std::optional<Clock> clock;
+    double reserve = 0;  // s, kept for what comes after
+};
+
+// Samples until the count or the time is reached; returns how many. At least one is taken.
+uint64_t takeSamples(Integrator& integrator, const SampleLimits& limits, RunContext& run, bool& interrupted) {
+    const PhaseTimer timer(run, "camera");
+    uint64_t done = 0;
+    uint64_t step = 1;
+    const double start = limits.clock ? limits.clock->used() : 0;
+    while (!limits.count || done < *limits.count) {
+        if (run.interrupted() && done > 0) {
+            interrupted = true;
+            break;
+        }
+        if (limits.count) step = std::min(step, *limits.count - done);
+        integrator.render(limits.begin + done, limits.begin + done + step, run);
+        done += step;
+        if (!limits.clock) {
+            run.progress("camera", static_cast<double>(done) / static_cast<double>(*limits.count));
+            step = std::min<uint64_t>(2 * step, 16);
+            continue;
+        }
+        const Clock& clock = *limits.clock;
+        const double perSample = (clock.used() - start) / static_cast<double>(done);
+        const double affordable = (clock.left() - limits.reserve) / perSample;
+        run.progress("camera", (clock.used() - start) / std::max(1e-9, clock.limit() - limits.reserve - start));
+        if (affordable < 0.5) break;
+        step = std::min<uint64_t>(std::max<uint64_t>(1, static_cast<uint64_t>(0.5 * affordable)), 64);
+    }
+    return done;
+}
+
+float progressiveScale(uint32_t pass) {  // Knaus & Zwicker 2011, eq. 20, a = 2/3
+    double ratio = 1;
+    for (uint32_t j = 1; j <= pass; ++j) ratio *= (j + 2.0 / 3) / (j + 1);
+    return static_cast<float>(std::sqrt(ratio));
+}
+
+Camera makeCamera(const Scene& scene, const RenderSettings& settings) {
+    const CameraDescription d = scene.camera(settings.camera);
+    const auto size = pictureSize(d, settings.size);
+    Camera camera(d, size[0], size[1]);
+    if (!settings.crop) return camera;
+    const Crop& c = *settings.crop;
+    if (c.x0 < 0 || c.y0 < 0 || c.x1 > size[0] || c.y1 > size[1] || c.x0 >= c.x1 || c.y0 >= c.y1)
+        throw UsageError(fmt::format("--crop {},{},{},{}: expected X0,Y0,X1,Y1 within 0,0,{},{}", c.x0, c.y0, c.x1,
+                                     c.y1, size[0], size[1]));
+    camera.crop(c.x0, c.y0, c.x1, c.y1);
+    return camera;
+}
+
+class Render {
+  public:
+    Render(const Scene& scene, const IntegratorEntry& method, const RenderSettings& settings, RunContext& run)
+        : scene_(scene),
+          settings_(settings),
+          run_(run),
+          method_(method),
+          layers_(settings.paths, settings.only),
+          selected_(scene.lightSelection(settings.lights)),
+          camera_(makeCamera(scene, settings)),
+          clock_(settings.cpuLimit, settings.wallLimit) {
+        if (scene.lights().empty())
+            throw Error(
+                fmt::format("{}: no light in the scene: expected an emissive material or a light of "
+                            "KHR_lights_punctual",
+                            scene.description().file.string()));
+        if (const std::string missing = method_.cannotMake(scene); !missing.empty()) run.warn(missing);
+    }
+
+    RenderResult picture() {
+        samples_ = settings_.spp;
+        if (!clock_.limited() && !samples_) samples_ = kDefaultSamples;
+        if (settings_.progressive > 0 && method_.usesPhotons)
+            progressivePasses();
+        else
+            onePass();
+        result_.image = mean_.file(layers_.filmLayers());
+        result_.picture = mean_.full();
+        result_.metadata =
+            describePicture(scene_, camera_, layers_,
+                            {method_.name, settings_.only.value_or(""), run_.seed, result_.photons, result_.samples});
+        if (result_.notFinite > 0)
+            run_.warn(fmt::format("{} contributions were not finite and were left out", result_.notFinite));
+        return std::move(result_);
+    }
+
+  private:
+    double reserve() const {  // s: developing and writing the picture
+        const double values = static_cast<double>(camera_.filmWidth()) * camera_.filmHeight() * 3 *
+                              static_cast<double>(layers_.filmLayers().size());
+        return 0.02 + 6e-8 * values;
+    }
+
+    EmitSettings emitSettings() const {
+        EmitSettings e;
+        e.photons = settings_.photons.value_or(kDefaultPhotons);
+        e.lights = settings_.lights;
+        return e;
+    }
+
+    PhotonMap map() {
+        if (clock_.limited() && settings_.map.empty() && !settings_.photons)
+            return mapByTime(scene_, emitSettings(), clock_, kEmissionShare * clock_.left(), run_);
+        SourcedMap sourced =
+            mapByCount(scene_, {settings_.map, settings_.cache, settings_.otherScene, emitSettings()}, run_);
+        result_.cachedMap = sourced.cached;
+        return std::move(sourced.map);
+    }
+
+    void note(const PhotonMap& map) {
+        result_.photons += map.header.emittedPaths();
+        result_.storedPhotons += map.photons(PhotonClass::Caustic).count;
+        if (const std::string why = whyNoCaustics(scene_, &map.header.ledger); !why.empty()) noCaustics_ = why;
+    }
+
+    GatherInput gatherInput(const PhotonMap& map) {
+        if (!creases_) creases_ = findCreases(scene_);
+        return {scene_, map, *creases_, selected_};
+    }
+    GatherSettings gatherSettings() const {
+        GatherSettings g;
+        g.index = settings_.index;
+        return g;
+    }
+
+    // The camera pass, and its picture added to the mean; returns the samples taken.
+    uint64_t see(const PhotonGather* photons, const SampleLimits& limits, double weight) {
+        const auto integrator = method_.make({scene_, camera_, layers_, selected_, photons, run_.seed});
+        const uint64_t done = takeSamples(*integrator, limits, run_, result_.interrupted);
+        std::vector<RgbImage> pictures;
+        const int count = static_cast<int>(layers_.filmLayers().size());
+        for (int i = 0; i < count; ++i) pictures.push_back(integrator->develop(i, done));
+        mean_.add(pictures, weight);
+        result_.samples += done;
+        result_.notFinite += integrator->notFinite();
+        return done;
+    }
+
+    void onePass() {
+        PhotonMap photonMap;
+        std::optional<PhotonGather> gather;
+        if (method_.usesPhotons && layers_.wantsPhotons()) {
+            photonMap = map();
+            note(photonMap);
+            if (!noCaustics_.empty()) run_.warn(noCaustics_);
+            gather.emplace(gatherInput(photonMap), gatherSettings(), run_);
+        }
+        SampleLimits limits{0, samples_, {}, reserve()};
+        if (clock_.limited()) limits.clock = clock_;
+        see(gather ? &*gather : nullptr, limits, 1);
+    }
+
+    void progressivePasses();
+
+    const Scene& scene_;
+    const RenderSettings& settings_;
+    RunContext& run_;
+    const IntegratorEntry& method_;
+    RenderLayers layers_;
+    std::vector<bool> selected_;
+    Camera camera_;
+    Clock clock_;
+    std::optional<uint64_t> samples_;
+    std::optional<std::vector<Segment>> creases_;
+    std::string noCaustics_;
+    PictureMean mean_;
+    RenderResult result_;
+};
+
+// Each pass has photons of its own and a radius that shrinks from the pilot's (the first pass's map); the pictures are
+// averaged. Under a time limit the first pass finds out what a pass may cost, and all others have its counts, so that
+// the same picture can be had by counts.
+void Render::progressivePasses() {
+    if (!settings_.map.empty()) throw UsageError("--progressive: emits its own maps, cannot be combined with --map");
+    const uint32_t passes = settings_.progressive;
+    const uint64_t photons = settings_.photons.value_or(kDefaultPhotons);
+    if (samples_.value_or(passes) < passes || photons < passes)
+        throw UsageError(fmt::format("--progressive {}: expected at most --spp ({}) and --photons ({}) passes", passes,
+                                     samples_.value_or(kDefaultSamples), photons));
+    const uint64_t seed = run_.seed;
+    std::optional<PhotonMap> pilotMap;
+    std::optional<PhotonGather> pilot;
+    std::optional<uint64_t> pathsEach, samplesEach;
+    double longest = 0;
+    for (uint32_t pass = 0; pass < passes && !result_.interrupted; ++pass) {
+        if (clock_.limited() && pass > 0 && clock_.left() - reserve() < longest) break;
+        const double start = clock_.used();
+        const double slice = clock_.limited() ? (clock_.left() - reserve()) / (passes - pass) : 0;
+        EmitSettings emit = emitSettings();
+        const IndexRange share = shardRange(photons, pass + 1, passes);
+        emit.photons = pathsEach.value_or(share.end - share.begin);
+        run_.seed = hashCombine(seed, pass);  // independent photons
+        const bool byTime = clock_.limited() && !settings_.photons && pass == 0;
+        const PhotonMap map =
+            byTime ? mapByTime(scene_, emit, clock_, kEmissionShare * slice, run_) : emitPhotons(scene_, emit, run_);
+        run_.seed = seed;
+        note(map);
+        if (byTime) pathsEach = map.header.emittedPaths();
+        if (pass == 0) {
+            pilotMap = map;
+            pilot.emplace(gatherInput(*pilotMap), gatherSettings(), run_);
+        }
+        GatherSettings settings = gatherSettings();
+        settings.progressive = {&pilot->index(), kPilotRadiusPhotons, progressiveScale(pass)};
+        const PhotonGather gather(gatherInput(map), settings, run_);
+        SampleLimits limits{result_.samples, samplesEach, {}, 0};
+        if (samples_) {
+            const IndexRange range = shardRange(*samples_, pass + 1, passes);
+            limits.count = range.end - range.begin;
+        } else if (!samplesEach) {
+            limits.clock = clock_.slice(slice - (clock_.used() - start));
+        }
+        const uint64_t done = see(&gather, limits, static_cast<double>(map.header.emittedPaths()));
+        if (!samples_) samplesEach = done;
+        longest = std::max(longest, clock_.used() - start);
+        ++result_.passes;
+        run_.progress("passes", static_cast<double>(pass + 1) / passes);
+    }
+    if (!noCaustics_.empty()) run_.warn(noCaustics_);
+}
+
+}  // namespace
+
+RenderResult renderPicture(const Scene& scene, const IntegratorEntry& method, const RenderSettings& settings,
+                           RunContext& run) {
+    return Render(scene, method, settings, run).picture();
+}
+
+}  // namespace lsde
