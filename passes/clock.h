@@ -1,6 +1,7 @@
 // The time limit of a run.
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include "base/run.h"
@@ -11,12 +12,12 @@ namespace lsde {
 class Clock {
   public:
     Clock(std::optional<double> cpuLimit, std::optional<double> wallLimit)
-        : cpu_(cpuLimit.has_value()), limit_(cpu_ ? cpuLimit : wallLimit) {}
+        : cpu_(cpuLimit.has_value()), limit_(cpuLimit.value_or(wallLimit.value_or(kNone))) {}
 
-    bool limited() const { return limit_.has_value(); }
+    bool limited() const { return limit_ < kNone; }
     double used() const { return cpu_ ? cpuSeconds() : wallSeconds(); }
-    double limit() const { return *limit_; }
-    double left() const { return *limit_ - used(); }
+    double limit() const { return limit_; }  // s; infinite if there is none
+    double left() const { return limit_ - used(); }
     // The same clock with an earlier limit, `seconds` from now.
     Clock slice(double seconds) const {
         Clock c = *this;
@@ -25,8 +26,9 @@ class Clock {
     }
 
   private:
+    static constexpr double kNone = std::numeric_limits<double>::infinity();
     bool cpu_;
-    std::optional<double> limit_;
+    double limit_;
 };
 
 }  // namespace lsde

@@ -17,7 +17,7 @@ constexpr uint64_t kPathsPerRound = 64 * kPathsPerChunk;  // between two looks a
 
 // One chunk's results, merged by sums that do not depend on the order.
 struct Chunk {
-    std::vector<PackedPhoton> photons[kPhotonClasses];
+    std::array<std::vector<PackedPhoton>, kPhotonClasses> photons;
     Ledger ledger;
 };
 

@@ -1,6 +1,7 @@
 // The emission pass: light paths from every source, their hits kept as a photon map.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -44,7 +45,7 @@ class Emission {
     EmitSettings settings_;
     uint64_t seed_;
     EmissionSampler sources_;
-    std::vector<PackedPhoton> photons_[kPhotonClasses];
+    std::array<std::vector<PackedPhoton>, kPhotonClasses> photons_;
     Ledger ledger_;
     std::vector<IndexRange> ranges_;
 };

@@ -66,9 +66,9 @@ ExrMetadata describePicture(const Scene& scene, const Camera& camera, const Rend
     m.whiteLuminance = 1.0F;  // one unit of radiance is one nit
     const Mat4 world = camera.worldToCamera();
     std::array<float, 16> rows{};
-    for (int i = 0; i < 4; ++i)
-        for (int j = 0; j < 4; ++j)
-            rows[static_cast<size_t>(4 * i + j)] = world[i][j];  // row vectors, as OpenEXR has them
+    for (size_t i = 0; i < 4; ++i)
+        for (size_t j = 0; j < 4; ++j)
+            rows[4 * i + j] = world[static_cast<int>(i)][static_cast<int>(j)];  // row vectors, as OpenEXR has them
     m.worldToCamera = rows;
     return m;
 }

@@ -42,7 +42,7 @@ uint64_t takeSamples(Integrator& integrator, const SampleLimits& limits, RunCont
         integrator.render(limits.begin + done, limits.begin + done + step, run);
         done += step;
         if (!limits.clock) {
-            run.progress("camera", static_cast<double>(done) / static_cast<double>(*limits.count));
+            run.progress("camera", static_cast<double>(done) / static_cast<double>(limits.count.value_or(done)));
             step = std::min<uint64_t>(2 * step, 16);
             continue;
         }
@@ -155,6 +155,7 @@ class Render {
         const auto integrator = method_.make({scene_, camera_, layers_, selected_, photons, run_.seed});
         const uint64_t done = takeSamples(*integrator, limits, run_, result_.interrupted);
         std::vector<RgbImage> pictures;
+        pictures.reserve(layers_.filmLayers().size());
         const int count = static_cast<int>(layers_.filmLayers().size());
         for (int i = 0; i < count; ++i) pictures.push_back(integrator->develop(i, done));
         mean_.add(pictures, weight);
@@ -207,6 +208,7 @@ void Render::progressivePasses() {
     const uint64_t seed = run_.seed;
     std::optional<PhotonMap> pilotMap;
     std::optional<PhotonGather> pilot;
+    const AnyIndex* pilotIndex = nullptr;
     std::optional<uint64_t> pathsEach, samplesEach;
     double longest = 0;
     for (uint32_t pass = 0; pass < passes && !result_.interrupted; ++pass) {
@@ -224,11 +226,11 @@ void Render::progressivePasses() {
         note(map);
         if (byTime) pathsEach = map.header.emittedPaths();
         if (pass == 0) {
-            pilotMap = map;
-            pilot.emplace(gatherInput(*pilotMap), gatherSettings(), run_);
+            const PhotonMap& kept = pilotMap.emplace(map);
+            pilotIndex = &pilot.emplace(gatherInput(kept), gatherSettings(), run_).index();
         }
         GatherSettings settings = gatherSettings();
-        settings.progressive = {&pilot->index(), kPilotRadiusPhotons, progressiveScale(pass)};
+        settings.progressive = {pilotIndex, kPilotRadiusPhotons, progressiveScale(pass)};
         const PhotonGather gather(gatherInput(map), settings, run_);
         SampleLimits limits{result_.samples, samplesEach, {}, 0};
         if (samples_) {

@@ -1,6 +1,7 @@
 // Photon maps: sections by class, and the header that says what they are. In memory or mapped from an .lsmap file.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -56,9 +57,9 @@ class PhotonMap {
   private:
     friend PhotonMap readPhotonMap(const std::filesystem::path&, RunContext&, bool);
     std::shared_ptr<const Mapping> mapping_;  // shared by copies of the map, which borrow the same file
-    std::shared_ptr<const PhotonTree> trees_[kPhotonClasses];
-    PhotonTreeView views_[kPhotonClasses];
-    bool stored_[kPhotonClasses] = {};
+    std::array<std::shared_ptr<const PhotonTree>, kPhotonClasses> trees_;
+    std::array<PhotonTreeView, kPhotonClasses> views_;
+    std::array<bool, kPhotonClasses> stored_{};
 };
 
 // Atomic; same map, same bytes. At most 40 bytes a photon.

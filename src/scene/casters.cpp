@@ -56,6 +56,7 @@ std::vector<Caster> groupCasters(std::vector<Sphere> spheres, size_t limit) {
         groups.push_back(group(middle, g.end));
     }
     std::vector<Caster> casters;
+    casters.reserve(groups.size());
     for (const Group& g : groups) casters.push_back({g.sphere});
     return casters;
 }

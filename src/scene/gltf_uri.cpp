@@ -46,16 +46,16 @@ bool hasScheme(std::string_view uri) {
     return !uri.empty() && isLetter(uri.front()) && end != uri.end() && *end == ':';
 }
 
-constexpr std::array<int8_t, 256> base64Values() {
-    std::array<int8_t, 256> values{};
+constexpr std::array<int, 256> base64Values() {
+    std::array<int, 256> values{};
     values.fill(-1);
     constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    for (size_t i = 0; i < kDigits.size(); ++i) values[static_cast<unsigned char>(kDigits[i])] = static_cast<int8_t>(i);
+    for (size_t i = 0; i < kDigits.size(); ++i) values[static_cast<unsigned char>(kDigits[i])] = static_cast<int>(i);
     return values;
 }
 
 std::string decodeBase64(std::string_view text) {
-    static constexpr std::array<int8_t, 256> kValues = base64Values();
+    static constexpr std::array<int, 256> kValues = base64Values();
     if (text.size() % 4 != 0)
         throw Error(fmt::format("base64 data of {} characters, expected a multiple of 4", text.size()));
     size_t digits = text.size();
@@ -98,7 +98,7 @@ fs::path resolveUri(const fs::path& folder, std::string_view uri, bool allowOuts
     if (name.empty() || name.front() == '/' || name.front() == '\\' || name.find('\0') != std::string::npos)
         throw Error(fmt::format("uri {}: refused, expected a relative path", uriShown));
     std::error_code error;
-    const fs::path path = fs::weakly_canonical(folder / name, error);
+    fs::path path = fs::weakly_canonical(folder / name, error);
     // Outside before missing: a refusal must not tell what is there.
     const fs::path home = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder);
     if (error || (!allowOutside && !isWithin(home, path)))

@@ -70,6 +70,7 @@ void Scene::buildMedia() {
 
 void Scene::findTouching() {
     std::vector<Bounds> bounds;
+    bounds.reserve(meshes_.size());
     for (const Mesh& mesh : description_.meshes) bounds.push_back(mesh.bounds());
     for (size_t a = 0; a < meshes_.size(); ++a) {
         if (meshes_[a].medium == kOutside) continue;

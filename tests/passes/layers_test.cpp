@@ -16,6 +16,7 @@ void checkPartition(const std::string& scene, const std::string& integrator,
     RgbImage sum(32, 32);
     // Photons of more than 29 events have no expression, and a layer of their own where there are any.
     std::vector<std::string> names;
+    names.reserve(partition.size() + 1);
     for (const LayerRequest& layer : partition) names.push_back(layer.name);
     if (r.image.channels.contains("unclassified.R")) names.emplace_back("unclassified");
     for (const std::string& name : names) {

@@ -96,8 +96,9 @@ inline Estimate estimate(const std::string& scene, const PictureSettings& settin
                 for (int y = by * side; y < (by + 1) * side; ++y)
                     for (int x = bx * side; x < (bx + 1) * side; ++x) block += luminance(image.at(x, y));
                 block /= side * side;
-                sum[static_cast<size_t>(by * blocks + bx)] += block;
-                sum2[static_cast<size_t>(by * blocks + bx)] += block * block;
+                const size_t at = static_cast<size_t>(by) * static_cast<size_t>(blocks) + static_cast<size_t>(bx);
+                sum[at] += block;
+                sum2[at] += block * block;
             }
     }
     Estimate e;

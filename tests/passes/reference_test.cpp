@@ -37,7 +37,7 @@ TEST_CASE("pictures agree with those of another renderer") {
         {"cornell-small", "cornell", "photon", 16, 0.005, 2e-3},
         {"pool-small", "pool", "photon", 16, 0.006, 3e-3},
         {"point-glass-small", "point-glass", "photon", 16, 0.005, 1e-3},
-        {"lights", "lights", "photon", 16, 0.003, 3e-4},
+        {"lights", "lights", "photon", 16, 0.003, 6e-4},
     };
     for (const Case& c : photon) check(c, settingsFor("photon", 256, c.samples, 1000000));
     const Case others[] = {
