@@ -9,7 +9,6 @@
 #include <glm/gtc/packing.hpp>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <regex>
 #include <string>
 #include <vector>
 
@@ -135,12 +134,13 @@ TEST_CASE("the report is one page that names nothing outside itself") {
         CHECK(page.find(marker) == std::string::npos);
     // As many tags end as begin, whatever the files' names hold.
     for (const char* tag : {"script", "style", "section", "table", "label", "div", "fieldset", "b"}) {
-        const auto count = [&](const std::string& pattern) {
-            const std::regex regex(pattern);
-            return std::distance(std::sregex_iterator(page.begin(), page.end(), regex), std::sregex_iterator());
+        const auto count = [&](const std::string& text) {
+            int n = 0;
+            for (size_t at = page.find(text); at != std::string::npos; at = page.find(text, at + 1)) ++n;
+            return n;
         };
         CAPTURE(tag);
-        CHECK(count(fmt::format("<{}[ >]", tag)) == count(fmt::format("</{}>", tag)));
+        CHECK(count(fmt::format("<{} ", tag)) + count(fmt::format("<{}>", tag)) == count(fmt::format("</{}>", tag)));
     }
 }
 
