@@ -74,8 +74,9 @@ void describeCameras(const Scene& scene, InfoResult& out) {
 InfoResult describeScene(const std::filesystem::path& file, const InfoSettings& settings, RunContext& run) {
     GltfOptions options;
     options.allowOutside = settings.allowOutside;
+    options.onWarning = [&run](const std::string& warning) { run.warn(warning); };
     const Scene scene(loadGltf(file, options));
-    for (const std::string& w : scene.description().warnings) run.warn(fmt::format("{}: {}", file.string(), w));
+    for (const std::string& warning : scene.description().warnings) run.warn(warning);
     InfoResult out;
     Json& j = *out.json;
     size_t triangles = 0;

@@ -106,8 +106,9 @@ std::unique_ptr<Scene> loadScene(const fs::path& file, const CommonOptions& o, R
     GltfOptions options;
     options.allowOutside = o.allowOutside;
     options.scene = o.sceneName;
+    options.onWarning = [&run](const std::string& warning) { run.warn(warning); };
     auto scene = std::make_unique<Scene>(loadGltf(file, options));
-    for (const std::string& w : scene->description().warnings) run.warn(fmt::format("{}: {}", file.string(), w));
+    for (const std::string& warning : scene->description().warnings) run.warn(warning);
     return scene;
 }
 

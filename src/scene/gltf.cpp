@@ -274,15 +274,12 @@ std::vector<Texture> loadTextures(TextureLoader loader, const JsonObject& root, 
     return textures;
 }
 
-}  // namespace
-
-SceneDescription loadGltf(const std::filesystem::path& file, const GltfOptions& options) {
+SceneDescription load(const std::filesystem::path& file, const GltfOptions& options, Warnings& warnings) {
     const std::string name = file.string();
-    GltfSource source = readGltfSource(file);
-    const Json json = validateGltf(file, source, options.allowOutside);
+    GltfSource source = readGltfSource(file, warnings);
+    const Json json = validateGltf(file, source, options.allowOutside, warnings);
     source.json = {};
     const JsonObject root(json, "", name);
-    Warnings& warnings = source.warnings;
 
     SceneDescription scene;
     scene.file = file;
@@ -305,8 +302,22 @@ SceneDescription loadGltf(const std::filesystem::path& file, const GltfOptions& 
     std::set<uint32_t> used;
     for (const Mesh& mesh : scene.meshes) used.insert(mesh.material);
     scene.textures = loadTextures(TextureLoader(resources, parsed), root, scene.materials, used);
-    scene.warnings = warnings.lines(name);
     return scene;
+}
+
+}  // namespace
+
+SceneDescription loadGltf(const std::filesystem::path& file, const GltfOptions& options) {
+    Warnings warnings;
+    try {
+        SceneDescription scene = load(file, options, warnings);
+        scene.warnings = warnings.lines(file.string());
+        return scene;
+    } catch (const Error&) {
+        if (options.onWarning)
+            for (const std::string& line : warnings.lines(file.string())) options.onWarning(line);
+        throw;
+    }
 }
 
 }  // namespace lsde

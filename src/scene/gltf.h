@@ -2,6 +2,7 @@
 // passed.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "scene/description.h"
@@ -11,6 +12,8 @@ namespace lsde {
 struct GltfOptions {
     std::string scene;          // name or index; empty: the file's default scene, else the first
     bool allowOutside = false;  // buffers and images outside the scene's folder
+    // Gets the warnings of a file that is then refused; those of a file that loads are in the result.
+    std::function<void(const std::string&)> onWarning;
 };
 
 // Throws Error "FILE: OBJECT: value, expected ..." for whatever render would refuse. No light or no camera is not an

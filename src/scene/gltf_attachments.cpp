@@ -19,8 +19,11 @@ Vec3 direction(const JsonObject& node, const glm::dmat4& m, int column) {
 }
 
 Vec3 position(const JsonObject& node, const glm::dmat4& m) {
-    const Vec3 p(m[3]);
-    if (!isFinite(p)) node.fail("its position is not finite");
+    const glm::dvec3 p(m[3]);
+    for (int c = 0; c < 3; ++c)
+        if (!(std::fabs(p[c]) <= kMaxCoordinate))
+            node.fail(fmt::format("its camera or light is at {:.4g} {:.4g} {:.4g} m, limit {:g} m", p.x, p.y, p.z,
+                                  kMaxCoordinate));
     return p;
 }
 

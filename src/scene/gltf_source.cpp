@@ -58,10 +58,10 @@ size_t checkedLength(const std::string& name, const std::string& bytes, Warnings
     return length;
 }
 
-GltfSource splitGlb(const std::string& name, std::string bytes) {
+GltfSource splitGlb(const std::string& name, std::string bytes, Warnings& warnings) {
     GltfSource source;
     source.isGlb = true;
-    const size_t end = checkedLength(name, bytes, source.warnings);
+    const size_t end = checkedLength(name, bytes, warnings);
     const Chunk json = chunkAt(name, bytes, kHeaderBytes, end, 0);
     if (json.type != kJsonChunk)
         throw Error(
@@ -78,7 +78,7 @@ GltfSource splitGlb(const std::string& name, std::string bytes) {
             throw Error(fmt::format("{}: GLB chunk {}: {} chunk, expected JSON as chunk 0 and BIN as chunk 1 only",
                                     name, number, chunk.type == kBinaryChunk ? "BIN" : "JSON"));
         } else {
-            source.warnings.add("GLB chunk of unknown type ignored", fmt::format("GLB chunk {}", number));
+            warnings.add("GLB chunk of unknown type ignored", fmt::format("GLB chunk {}", number));
         }
     }
     source.json = bytes.substr(json.begin, json.size);
@@ -89,9 +89,9 @@ GltfSource splitGlb(const std::string& name, std::string bytes) {
     return source;
 }
 
-GltfSource splitFile(const std::string& name, std::string bytes) {
+GltfSource splitFile(const std::string& name, std::string bytes, Warnings& warnings) {
     if (bytes.empty()) throw Error(name + ": the file is empty, expected glTF");
-    if (bytes.starts_with(kMagic)) return splitGlb(name, std::move(bytes));
+    if (bytes.starts_with(kMagic)) return splitGlb(name, std::move(bytes), warnings);
     GltfSource source;
     source.json = std::move(bytes);
     return source;
@@ -99,9 +99,9 @@ GltfSource splitFile(const std::string& name, std::string bytes) {
 
 }  // namespace
 
-GltfSource readGltfSource(const std::filesystem::path& file) {
+GltfSource readGltfSource(const std::filesystem::path& file, Warnings& warnings) {
     const std::string name = file.string();
-    GltfSource source = splitFile(name, readFile(file, kMaxFileBytes));
+    GltfSource source = splitFile(name, readFile(file, kMaxFileBytes), warnings);
     if (source.json.starts_with("\xEF\xBB\xBF"))
         throw Error(name + ": starts with a byte-order mark, which glTF forbids: expected JSON");
     const size_t first = source.json.find_first_not_of(" \t\r\n");

@@ -103,15 +103,14 @@ void checkExtensions(GltfChecks& checks) {
             checks.root.fail(fmt::format("extension {} is required, but not supported", shown(extension)));
     for (const std::string& extension : strings(checks.root, "extensionsUsed")) {
         checks.extensionsUsed.insert(extension);
-        if (!isSupported(extension))
-            checks.warnings().add(fmt::format("extension {} is ignored", shown(extension)), "");
+        if (!isSupported(extension)) checks.warnings.add(fmt::format("extension {} is ignored", shown(extension)), "");
     }
 }
 
-Json validateGltf(const std::filesystem::path& file, GltfSource& source, bool allowOutside) {
+Json validateGltf(const std::filesystem::path& file, const GltfSource& source, bool allowOutside, Warnings& warnings) {
     const std::string name = file.string();
     Json json = parseJson(name, source.json);
-    GltfChecks checks{JsonObject(json, "", name), file.parent_path(), allowOutside, source, {}, {}, {}, {}};
+    GltfChecks checks{JsonObject(json, "", name), file.parent_path(), allowOutside, source, warnings, {}, {}, {}, {}};
     checkAsset(checks);
     checkExtensions(checks);
     checkBuffers(checks);
@@ -120,7 +119,7 @@ Json validateGltf(const std::filesystem::path& file, GltfSource& source, bool al
     checkTextures(checks);
     checkMeshes(checks);
     checkNodes(checks);
-    if (checks.root.size("animations") > 0) source.warnings.add("animations are not rendered", "");
+    if (checks.root.size("animations") > 0) warnings.add("animations are not rendered", "");
     return json;
 }
 

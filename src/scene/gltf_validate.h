@@ -16,15 +16,15 @@ struct GltfSource {
     std::string binary;  // the GLB's BIN chunk
     bool isGlb = false;
     bool hasBinary = false;
-    Warnings warnings;
 };
 
 // Reads .gltf or .glb (told apart by content). Throws Error: missing, empty, truncated, bad magic or version, chunks
 // beyond the file, JSON chunk not first, byte-order mark.
-GltfSource readGltfSource(const std::filesystem::path& file);
+GltfSource readGltfSource(const std::filesystem::path& file, Warnings& warnings);
 
 // Throws Error naming file, object ("mesh 2 primitive 0"), value and what was expected: not JSON, too deep (limit
 // named), or not valid glTF that this program can render. Adds warnings.
-nlohmann::json validateGltf(const std::filesystem::path& file, GltfSource& source, bool allowOutside);
+nlohmann::json validateGltf(const std::filesystem::path& file, const GltfSource& source, bool allowOutside,
+                            Warnings& warnings);
 
 }  // namespace lsde

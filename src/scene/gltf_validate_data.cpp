@@ -142,8 +142,8 @@ void checkBuffers(GltfChecks& checks) {
                 object.fail(fmt::format("byteLength {}, but the BIN chunk has {} bytes", buffer.bytes, there));
             // A chunk is padded to a multiple of 4.
             if (there > buffer.bytes + 3)
-                checks.warnings().add(fmt::format("byteLength {}, but the BIN chunk has {} bytes", buffer.bytes, there),
-                                      object.where());
+                checks.warnings.add(fmt::format("byteLength {}, but the BIN chunk has {} bytes", buffer.bytes, there),
+                                    object.where());
         } else {
             if (checks.buffers.empty() && checks.source.isGlb && !object.has("extensions"))
                 object.fail("neither uri nor BIN chunk, expected one of them");

@@ -118,7 +118,7 @@ void checkPrimitive(const GltfChecks& checks, const JsonObject& primitive, ViewU
     if (const auto indices = primitive.reference("indices", "accessor", checks.accessors.size()))
         checkIndices(checks, primitive, *indices);
     for (const JsonObject& target : primitive.objects("targets", "target")) {
-        checks.warnings().add("morph targets are not rendered", primitive.where());
+        checks.warnings.add("morph targets are not rendered", primitive.where());
         for (const auto& [name, value] : target.json().items())
             target.reference(name.c_str(), "accessor", checks.accessors.size());
     }

@@ -38,7 +38,7 @@ void checkNode(const GltfChecks& checks, const JsonObject& node) {
     node.reference("mesh", "mesh", checks.root.size("meshes"));
     node.reference("camera", "camera", checks.root.size("cameras"));
     if (node.reference("skin", "skin", checks.root.size("skins")))
-        checks.warnings().add("skinning is not rendered: the mesh is shown at rest", node.where());
+        checks.warnings.add("skinning is not rendered: the mesh is shown at rest", node.where());
     if (const auto light = node.extension("KHR_lights_punctual")) {
         light->require("light");
         light->reference("light", "light", lightCount(checks));

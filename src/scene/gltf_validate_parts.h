@@ -37,13 +37,13 @@ struct GltfChecks {
     JsonObject root;
     std::filesystem::path folder;
     bool allowOutside = false;
-    GltfSource& source;
+    const GltfSource& source;
+    Warnings& warnings;
     std::set<std::string> extensionsUsed;
     std::vector<BufferInfo> buffers;
     std::vector<ViewInfo> views;
     std::vector<AccessorInfo> accessors;
 
-    Warnings& warnings() const { return source.warnings; }
     bool uses(const std::string& extension) const { return extensionsUsed.count(extension) > 0; }
 };
 

@@ -172,12 +172,14 @@ TEST_CASE("photons beyond the plane's thickness do not count until the radius ha
     CHECK(accepted(1.1F * kPlaneThickness, 1) == 0);
     CHECK(accepted(-1.1F * kPlaneThickness, 1) == 0);
     CHECK(accepted(1.1F * kPlaneThickness, 1.2F) == 1);
-    // Grown to hold three: those of the plane, not the many of a step that is closer by.
+    // Grown to hold three: those of the plane, not the many of steps that are closer by.
     std::vector<Photon> photons;
     photons.reserve(60);
-    for (int i = 0; i < 50; ++i) photons.push_back(photonAt({0, 0.001F * static_cast<float>(i), 0.1F}));
+    for (int i = 0; i < 50; ++i) photons.push_back(photonAt({0, 0, 0.0602F + 0.001F * static_cast<float>(i)}));
     for (int i = 1; i <= 3; ++i) photons.push_back(photonAt({0.1F * static_cast<float>(i), 0, 0}));
-    CHECK(estimate(photons, queryAtOrigin(3, 0, 1)).disc.radius == doctest::Approx(0.3F));
+    const Estimate grown = estimate(photons, queryAtOrigin(3, 0, 1));
+    CHECK(grown.disc.radius == doctest::Approx(0.3F));
+    CHECK(grown.taken.size() == 2);  // and the third on the rim
 }
 
 TEST_CASE("rounded positions far from the origin do not lie beyond the plane, however small the radius") {
@@ -187,11 +189,11 @@ TEST_CASE("rounded positions far from the origin do not lie beyond the plane, ho
     std::vector<Photon> photons;
     for (int i = 0; i < 1000; ++i) {
         Photon p =
-            photonAt(Vec3(100, 50, 20) + 1e-3F * (frame.x * random.between(-1, 1) + frame.y * random.between(-1, 1)));
+            photonAt(Vec3(100, 50, 20) + 2e-5F * (frame.x * random.between(-1, 1) + frame.y * random.between(-1, 1)));
         p.ng = p.direction = normal;
         photons.push_back(p);
     }
-    DensityQuery query = queryAtOrigin(0, 5e-5F, 5e-5F);
+    DensityQuery query = queryAtOrigin(0, 6e-6F, 6e-6F);
     query.point.position = {100, 50, 20};
     query.point.ng = query.sideNormal = normal;
     const PhotonTree tree = treeOf(photons);

@@ -157,3 +157,9 @@ TEST_CASE("cameras with impossible values are refused, used or not") {
                        {"orthographic", {{"xmag", 1}, {"ymag", 0}, {"znear", 0}, {"zfar", 1}}}};
     CHECK(contains(refusalOf(cameraFile(flat)), "camera 0 orthographic: xmag 1, ymag 0, expected other than 0"));
 }
+
+TEST_CASE("a camera or light beyond the limit of coordinates is refused") {
+    for (const GltfFile& file : {cameraFile(kPerspective, {{"translation", {0, 2e9, 0}}}),
+                                 lightFile({{"type", "point"}}, {{"translation", {0, 2e9, 0}}})})
+        CHECK(contains(refusalOf(file), "node 1: its camera or light is at 0 2e+09 0 m, limit 1e+09 m"));
+}

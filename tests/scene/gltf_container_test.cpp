@@ -15,7 +15,7 @@ std::string refusalBeside(const GltfFile& file, const std::string& name, const s
     std::filesystem::create_directory(folder / "scenes");
     put(folder / "scenes/scene.gltf", file.json.dump());
     put(folder / name, content);
-    return errorOf([&] { loadGltf(folder / "scenes/scene.gltf", {.scene = "", .allowOutside = allowOutside}); });
+    return errorOf([&] { loadGltf(folder / "scenes/scene.gltf", optionsOf("", allowOutside)); });
 }
 
 // The triangle, its buffer in a file of this URI.
@@ -112,7 +112,7 @@ TEST_CASE("a link does not lead out of the scene's folder") {
     std::filesystem::create_symlink("../secret.bin", folder / "scenes/link.bin");
     put(folder / "scenes/scene.gltf", triangleWithUri("link.bin").json.dump());
     CHECK(contains(errorOf([&] { loadGltf(folder / "scenes/scene.gltf"); }), "outside the scene's folder"));
-    CHECK(errorOf([&] { loadGltf(folder / "scenes/scene.gltf", {.scene = "", .allowOutside = true}); }).empty());
+    CHECK(errorOf([&] { loadGltf(folder / "scenes/scene.gltf", optionsOf("", true)); }).empty());
     // The folder itself may be reached by one.
     std::filesystem::create_directory_symlink("scenes", folder / "alias");
     put(folder / "scenes/scene.gltf", triangleWithUri("own.bin").json.dump());

@@ -119,6 +119,13 @@ inline GltfFile triangleFileWith(Json material) {
     return file;
 }
 
+inline GltfOptions optionsOf(const std::string& scene, bool allowOutside = false) {
+    GltfOptions options;
+    options.scene = scene;
+    options.allowOutside = allowOutside;
+    return options;
+}
+
 inline SceneDescription loadText(const std::string& content, const GltfOptions& options = {}) {
     const TemporaryFolder folder;
     put(folder / "scene.gltf", content);

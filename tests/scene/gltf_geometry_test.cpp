@@ -347,9 +347,7 @@ TEST_CASE("one of several scenes is chosen by name or number, else the default, 
     file.add("scenes", {{"name", "second"}, {"nodes", {1}}});
     file.add("scenes", {{"name", "0"}, {"nodes", {2}}});
     file["/nodes/0/name"] = "n0";
-    const auto shown = [&](const std::string& scene) {
-        return load(file, {.scene = scene, .allowOutside = false}).meshes.at(0).object;
-    };
+    const auto shown = [&](const std::string& scene) { return load(file, optionsOf(scene)).meshes.at(0).object; };
     CHECK(shown("") == "n0");
     CHECK(shown("second") == "n1");
     CHECK(shown("1") == "n1");
@@ -358,7 +356,7 @@ TEST_CASE("one of several scenes is chosen by name or number, else the default, 
     CHECK(shown("") == "n2");
     file.json.erase("scene");
     CHECK(shown("") == "n0");
-    CHECK(load(file, {.scene = "second", .allowOutside = false}).sceneName == "second");
+    CHECK(load(file, optionsOf("second")).sceneName == "second");
     CHECK(contains(errorOf([&] { shown("third"); }),
                    "scene \"third\": does not exist, expected one of: 0, 1 \"second\", 2 \"0\""));
     CHECK(contains(errorOf([&] { shown("3"); }), "scene \"3\": does not exist"));

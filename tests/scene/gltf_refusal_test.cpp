@@ -1,6 +1,7 @@
 // What is refused, and by which line.
 #include <doctest/doctest.h>
 
+#include "base/error.h"
 #include "scene/gltf_file.h"
 
 using namespace lsde;
@@ -321,4 +322,19 @@ TEST_CASE("a line that refuses stays one short line, whatever the names in the f
     CHECK(said.find('\x1b') == std::string::npos);
     CHECK(said.size() < 300);
     CHECK(contains(said, "two\\nlines"));
+}
+
+TEST_CASE("warnings that came before a refusal are not lost") {
+    GltfFile file = triangleFile();
+    file.json["extensionsUsed"] = {"KHR_materials_sheen"};
+    file["/nodes/0/mesh"] = 3;
+    std::vector<std::string> warnings;
+    GltfOptions options;
+    options.onWarning = [&](const std::string& line) { warnings.push_back(line); };
+    CHECK_THROWS_AS(load(file, options), Error);
+    REQUIRE(warnings.size() == 1);
+    CHECK(contains(warnings[0], "scene.gltf: extension \"KHR_materials_sheen\" is ignored"));
+    file["/nodes/0/mesh"] = 0;
+    CHECK(warnsOnce(load(file, options), "extension \"KHR_materials_sheen\" is ignored"));
+    CHECK(warnings.size() == 1);
 }

@@ -43,11 +43,15 @@ inline Mesh flipped(Mesh m) {
     return m;
 }
 
+inline void append(Mesh& to, const Mesh& part) {
+    const auto first = static_cast<uint32_t>(to.positions.size());
+    to.positions.insert(to.positions.end(), part.positions.begin(), part.positions.end());
+    to.normals.insert(to.normals.end(), part.normals.begin(), part.normals.end());
+    for (const Triangle& t : part.triangles) to.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+}
+
 inline Mesh joined(Mesh a, const Mesh& b) {
-    const auto first = static_cast<uint32_t>(a.positions.size());
-    a.positions.insert(a.positions.end(), b.positions.begin(), b.positions.end());
-    a.normals.insert(a.normals.end(), b.normals.begin(), b.normals.end());
-    for (const Triangle& t : b.triangles) a.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    append(a, b);
     return a;
 }
 

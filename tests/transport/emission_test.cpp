@@ -288,7 +288,7 @@ TEST_CASE("the first points of the sequence lie evenly over a light's directions
         const Vec3 d = draw(sources, i).start.ray.direction;
         const float turn = std::atan2(d.y, d.x) / (2 * kPi);
         const int row = static_cast<int>(8 * (1 - d.z)), column = static_cast<int>(16 * (turn < 0 ? turn + 1 : turn));
-        ++cells[static_cast<size_t>(16 * std::min(row, 15) + std::min(column, 15))];
+        ++cells[static_cast<size_t>(std::min(row, 15)) * 16 + static_cast<size_t>(std::min(column, 15))];
     }
     CHECK(std::count(cells.begin(), cells.end(), 1) >= 250);  // rounding may move a few over a cell's edge
 }

@@ -16,15 +16,15 @@ constexpr float kWater = 1.33F, kGlass = 1.5F;
 
 // A tub of glass, open at the top: an outer and an inner box without lids, joined by a rim.
 Mesh tub() {
-    Mesh m = test::joined(test::box({-0.5F, 0, -0.5F}, {0.5F, 1, 0.5F}),
-                          test::flipped(test::box({-0.4F, 0.1F, -0.4F}, {0.4F, 1, 0.4F})));
+    Mesh m = test::box({-0.5F, 0, -0.5F}, {0.5F, 1, 0.5F});
+    test::append(m, test::flipped(test::box({-0.4F, 0.1F, -0.4F}, {0.4F, 1, 0.4F})));
     std::erase_if(m.triangles, [&](const Triangle& t) {
         return std::all_of(t.begin(), t.end(), [&](uint32_t v) { return m.positions[v].y == 1; });
     });
     for (const float s : {-1.0F, 1.0F}) {
         const auto at = [s](float x, float z) { return Vec3(s * x, 1, s * z); };
-        m = test::joined(m, test::quad(at(-0.5F, 0.5F), at(0.5F, 0.5F), at(0.4F, 0.4F), at(-0.4F, 0.4F)));
-        m = test::joined(m, test::quad(at(0.5F, 0.5F), at(0.5F, -0.5F), at(0.4F, -0.4F), at(0.4F, 0.4F)));
+        test::append(m, test::quad(at(-0.5F, 0.5F), at(0.5F, 0.5F), at(0.4F, 0.4F), at(-0.4F, 0.4F)));
+        test::append(m, test::quad(at(0.5F, 0.5F), at(0.5F, -0.5F), at(0.4F, -0.4F), at(0.4F, 0.4F)));
     }
     return m;
 }
