@@ -23,12 +23,12 @@ struct CausticSwitches {
 
 // Winding is counter-clockwise seen from the front, a mirroring node's flip already undone.
 struct Mesh {
-    std::string object;               // the node's name, else the mesh's, else "node N"; flux is reported by it
-    std::vector<Vec3> positions;      // m, world
-    std::vector<Vec3> normals;        // unit, by the inverse transpose; empty: flat
-    std::vector<Vec2> texCoords[2];   // TEXCOORD_0 and _1, empty if absent
-    std::vector<Vec4> colors;         // COLOR_0, linear; empty if absent
-    std::vector<Triangle> triangles;  // degenerate ones already left out, with a warning
+    std::string object;           // the node's name, else the mesh's, else "node N"; flux is reported by it
+    std::vector<Vec3> positions;  // m, world
+    std::vector<Vec3> normals;    // unit, by the inverse transpose; empty: flat
+    std::array<std::vector<Vec2>, 2> texCoords;  // TEXCOORD_0 and _1, empty if absent
+    std::vector<Vec4> colors;                    // COLOR_0, linear; empty if absent
+    std::vector<Triangle> triangles;             // degenerate ones already left out, with a warning
     uint32_t material = 0;
     uint32_t node = 0;  // index of the node in the file: primitives of one node and material bound one solid
     CausticSwitches switches;

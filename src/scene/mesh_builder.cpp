@@ -174,7 +174,7 @@ std::optional<Mesh> placePrimitive(const PrimitiveData& primitive, const glm::dm
     Mesh mesh;
     placePositions(primitive, world, mesh);
     placeNormals(primitive, world, mesh, warnings);
-    for (size_t set = 0; set < 2; ++set) mesh.texCoords[set] = primitive.texCoords[set];
+    mesh.texCoords = primitive.texCoords;
     mesh.colors = primitive.colors;
     const bool mirrored = glm::determinant(glm::dmat3(world)) < 0;
     uint64_t degenerate = 0;

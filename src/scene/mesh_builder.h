@@ -1,6 +1,7 @@
 // From a primitive's arrays to meshes in world space.
 #pragma once
 
+#include <array>
 #include <glm/glm.hpp>
 #include <optional>
 #include <span>
@@ -37,7 +38,7 @@ struct PrimitiveData {
     std::string file, where;  // "mesh 2 primitive 0", for errors
     std::vector<Vec3> positions;
     std::vector<Vec3> normals;
-    std::vector<Vec2> texCoords[2];
+    std::array<std::vector<Vec2>, 2> texCoords;
     std::vector<Vec4> colors;
     std::vector<Triangle> triangles;
 };

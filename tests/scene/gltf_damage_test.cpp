@@ -26,7 +26,7 @@ std::vector<std::filesystem::path> scenesBelow(const std::filesystem::path& fold
 
 // The Error's message, or nothing if the file loads. Anything else that is thrown fails the test.
 std::string outcomeOf(const std::filesystem::path& file) {
-    const std::string message = errorOf([&] { loadGltf(file); });
+    std::string message = errorOf([&] { loadGltf(file); });
     CHECK(message.find('\n') == std::string::npos);
     CHECK(message.size() < 1000);
     return message;
