@@ -1,29 +1,40 @@
 // Queries of the packed kd-tree and of FLANN's, on photons like those of two kinds of scene.
 //
+// usage: bench_index [--map MAP.lsmap] [--benchmark_...]
+//
+// Photons: those that a glass ball throws on a floor (of the map, which `lsde emit scenes/glass-sphere.glb --photons
+// 1400000` makes, or else drawn from a density like it), and those of a box's walls. Queries: the points that a camera
+// sees, in the order in which the camera pass visits them ("image") or shuffled.
+//
 // Time is nanoseconds a query. Queries by radius and of the k nearest are answered with a list of photons and their
-// distances, density estimates with a sum of weights over 20 photons or more. Names: PHOTONS/QUERY/ORDER/INDEX.
+// distances, density estimates with a sum of weights over the radius that the camera pass takes. Names:
+// PHOTONS/QUERY/ORDER/INDEX. The table at the end has the least times of all repetitions.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <memory>
 #include <random>
 #include <string>
+#include <tuple>
 #include <vector>
 
+#include "base/error.h"
 #include "photon/density.h"
+#include "photon/map_file.h"
 
 using namespace lsde;
 
 namespace {
 
+// Photons, and points to query at.
 struct Workload {
-    std::string name;
-    PhotonTree tree;
-    std::vector<SurfacePoint> imageOrder, shuffled;
-    std::unique_ptr<KdIndex> kd;
-    std::unique_ptr<FlannIndex> flann;
+    PhotonMap map;                      // class Caustic
+    float area;                         // m2, on which the photons lie
+    std::vector<SurfacePoint> queries;  // in image order
 };
 
 using Random = std::mt19937;
@@ -60,104 +71,192 @@ std::vector<PackedPhoton> photonsOf(size_t count, const std::function<SurfacePoi
     std::vector<PackedPhoton> photons(count);
     for (PackedPhoton& p : photons) {
         const SurfacePoint point = photon(random);
-        p.position = point.position;
-        p.payload.normal = packNormal(point.ng);
-        p.payload.direction = packDirection(point.ng);
+        p = pack({.position = point.position, .direction = point.ng, .ng = point.ng});
     }
     return photons;
 }
 
-PhotonTree treeOf(size_t count, const std::function<SurfacePoint(Random&)>& photon) {
+PhotonMap mapOf(size_t count, const std::function<SurfacePoint(Random&)>& photon) {
     ThreadPool pool;
-    return buildPhotonTree(photonsOf(count, photon), pool);
+    PhotonMap map;
+    map.setTree(PhotonClass::Caustic, buildPhotonTree(photonsOf(count, photon), pool));
+    return map;
 }
 
-void finish(Workload& w) {
-    w.shuffled = w.imageOrder;
-    std::shuffle(w.shuffled.begin(), w.shuffled.end(), Random(2));
-    w.kd = std::make_unique<KdIndex>(view(w.tree));
-    w.flann = std::make_unique<FlannIndex>(view(w.tree));
-}
+constexpr int kImage = 512;  // pixels
+constexpr int kTile = 16;    // pixels; as in the camera pass
 
+// Calls pixel(x, y) for one tile in `share`, evenly over an image: whole passes over all pixels would take minutes,
+// and part of a pass would not be the image.
+template <typename Pixel>
+void forTiles(int share, Pixel&& pixel) {
+    constexpr int kTiles = kImage / kTile;
+    for (int tile = 0; tile < kTiles * kTiles; ++tile) {
+        if ((tile % kTiles + 3 * (tile / kTiles)) % share != 0) continue;
+        for (int at = 0; at < kTile * kTile; ++at)
+            pixel(tile % kTiles * kTile + at % kTile, tile / kTiles * kTile + at / kTile);
+    }
+}
+float centreOf(int pixel) { return (static_cast<float>(pixel) + 0.5F) / kImage; }  // in [0,1]
+
+// From straight above the caustic.
 Workload concentrated() {
-    Workload w{"concentrated1M", treeOf(1'000'000, photonOfConcentrated), {}, {}, {}, {}};
-    for (int y = 0; y < 512; ++y)
-        for (int x = 0; x < 512; ++x)
-            w.imageOrder.push_back(
-                surface({1.2F * (static_cast<float>(x) / 512 - 0.5F), 0, 1.2F * (static_cast<float>(y) / 512 - 0.5F)},
-                        {0, 1, 0}));
-    finish(w);
+    constexpr float kSide = 1.2F;  // m
+    Workload w{mapOf(1'000'000, photonOfConcentrated), kPi * 4, {}};
+    forTiles(4, [&](int x, int y) {
+        w.queries.push_back(surface({kSide * (centreOf(x) - 0.5F), 0, kSide * (centreOf(y) - 0.5F)}, {0, 1, 0}));
+        w.queries.back().footprint = kSide / kImage;
+    });
     return w;
 }
 
+// The floor as the camera of scenes/glass-sphere.glb sees it, did the ball not hide part of it.
+Workload glassSphere(const std::string& file) {
+    const Vec3 eye(0, 3.5F, 8), forward = glm::normalize(Vec3(0, 0.6F, 0) - eye);
+    const Vec3 right(1, 0, 0), up = glm::cross(right, forward);
+    const float halfHeight = std::tan(17.5F * kPi / 180), floor = 8;  // m
+    RunContext run;
+    Workload w{readPhotonMap(file, run), square(floor), {}};
+    forTiles(4, [&](int x, int y) {
+        const Vec3 ray = forward + halfHeight * ((2 * centreOf(x) - 1) * right - (2 * centreOf(y) - 1) * up);
+        const float distance = -eye.y / ray.y;
+        const Vec3 p = eye + distance * ray;
+        if (!(ray.y < 0) || std::max(std::fabs(p.x), std::fabs(p.z)) > floor / 2) return;
+        w.queries.push_back(surface({p.x, 0, p.z}, {0, 1, 0}));
+        w.queries.back().footprint = distance * 2 * halfHeight / kImage;
+    });
+    return w;
+}
+
+// Each wall from in front of it.
 Workload box() {
-    Workload w{"box10M", treeOf(10'000'000, photonOfBox), {}, {}, {}, {}};
+    Workload w{mapOf(10'000'000, photonOfBox), 6, {}};
     for (int wall = 0; wall < 6; ++wall)
-        for (int y = 0; y < 512; ++y)
-            for (int x = 0; x < 512; ++x)
-                w.imageOrder.push_back(
-                    pointOnWall(wall, (static_cast<float>(x) + 0.5F) / 512, (static_cast<float>(y) + 0.5F) / 512));
-    finish(w);
+        forTiles(16, [&](int x, int y) {
+            w.queries.push_back(pointOnWall(wall, centreOf(x), centreOf(y)));
+            w.queries.back().footprint = 1.0F / kImage;
+        });
     return w;
 }
 
-// The radius (m) that holds `count` photons at the mean of the queries.
-float radiusForMean(const Workload& w, double count) {
-    float low = 0, high = 1;
-    for (int step = 0; step < 24; ++step) {
-        const float radius = 0.5F * (low + high);
-        NeighbourList found;
-        double sum = 0;
-        size_t queries = 0;
-        for (size_t i = 0; i < w.shuffled.size(); i += 17, ++queries) {
-            w.kd->within(w.shuffled[i].position, radius, found);
-            sum += static_cast<double>(found.size());
-            if (sum > count * static_cast<double>(w.shuffled.size())) break;
+// A workload with its indices, each made when the first benchmark of it runs: a filter that leaves it out saves the
+// time.
+class Subject {
+  public:
+    Subject(std::string name, std::function<Workload()> make) : name_(std::move(name)), make_(std::move(make)) {}
+    const std::string& name() const { return name_; }
+
+    const Workload& workload() {
+        if (!workload_) {
+            workload_ = std::make_unique<Workload>(make_());
+            shuffled_ = workload_->queries;
+            std::shuffle(shuffled_.begin(), shuffled_.end(), Random(2));
         }
-        (sum < count * static_cast<double>(queries) ? low : high) = radius;
+        return *workload_;
     }
-    return low;
+    const std::vector<SurfacePoint>& queries(bool imageOrder) {
+        return imageOrder ? workload().queries : (workload(), shuffled_);
+    }
+    template <typename Index>
+    const Index& index() {
+        auto& index = std::get<std::unique_ptr<Index>>(indices_);
+        if (!index) index = std::make_unique<Index>(workload().map.photons(PhotonClass::Caustic));
+        return *index;
+    }
+
+    // The radius (m) that holds `count` photons at the mean of the queries.
+    float radiusHolding(uint32_t count);
+
+  private:
+    std::string name_;
+    std::function<Workload()> make_;
+    std::unique_ptr<Workload> workload_;
+    std::vector<SurfacePoint> shuffled_;
+    std::map<uint32_t, float> radii_;  // m, by count
+    std::tuple<std::unique_ptr<KdIndex>, std::unique_ptr<FlannIndex>> indices_;
+};
+
+float Subject::radiusHolding(uint32_t count) {
+    if (const auto known = radii_.find(count); known != radii_.end()) return known->second;
+    // At all queries, not at a few: in a focus, few hold most of the photons.
+    const double wanted = count * static_cast<double>(workload().queries.size());
+    float low = 1e-5F, high = 1;
+    NeighbourList found;
+    for (int step = 0; step < 12; ++step) {
+        const float radius = std::sqrt(low * high);
+        double sum = 0;
+        for (size_t i = 0; i < shuffled_.size() && sum < wanted; ++i) {
+            index<KdIndex>().within(shuffled_[i].position, radius, found);
+            sum += static_cast<double>(found.size());
+        }
+        (sum < wanted ? low : high) = radius;
+    }
+    return radii_[count] = low;
 }
 
-template <typename Query>
-void run(benchmark::State& state, const std::vector<SurfacePoint>& queries, const Query& query) {
-    DensityScratch scratch;
-    size_t i = 0;
-    double photons = 0;
-    for (auto _ : state) {
-        photons += static_cast<double>(query(queries[i], scratch));
-        if (++i == queries.size()) i = 0;
+// The queries. Each answers with the number of photons found.
+
+struct WithinRadius {
+    float radius;  // m
+    size_t operator()(const auto& index, const SurfacePoint& q, DensityScratch& s) const {
+        index.within(q.position, radius, s.found);
+        return s.found.size();
     }
+};
+struct Nearest {
+    uint32_t count;
+    size_t operator()(const auto& index, const SurfacePoint& q, DensityScratch& s) const {
+        index.nearest(q.position, count, kInfinity, s.found);
+        return s.found.size();
+    }
+};
+struct Density {
+    float maxRadius;  // m: holds 80 photons at the mean density
+    size_t operator()(const auto& index, const SurfacePoint& q, DensityScratch& s) const {
+        const DensityQuery query{.point = q,
+                                 .sideNormal = q.ng,
+                                 .minCount = 20,
+                                 .minRadius = std::min(0.5F * q.footprint, maxRadius),
+                                 .maxRadius = maxRadius};
+        float sum = 0;
+        const GatheredDisc disc = gatherPhotons(index, query, s, [&](uint32_t, float weight) { sum += weight; });
+        benchmark::DoNotOptimize(sum);
+        return disc.accepted;
+    }
+};
+
+// Whole passes over the queries only, so that every index answers the same.
+template <typename Index, typename Query>
+void run(benchmark::State& state, const Index& index, const std::vector<SurfacePoint>& queries, const Query& query) {
+    DensityScratch scratch;
+    double photons = 0;
+    while (state.KeepRunningBatch(static_cast<benchmark::IterationCount>(queries.size())))
+        for (const SurfacePoint& q : queries) photons += static_cast<double>(query(index, q, scratch));
     state.counters["photons"] = benchmark::Counter(photons, benchmark::Counter::kAvgIterations);
 }
 
-template <typename Index>
-void addQueries(const Workload& w, const Index& index, const std::string& indexName) {
-    for (const bool ordered : {true, false}) {
-        const std::vector<SurfacePoint>& queries = ordered ? w.imageOrder : w.shuffled;
-        const auto add = [&](const std::string& kind, const auto& query) {
-            const std::string name =
-                fmt::format("{}/{}/{}/{}", w.name, kind, ordered ? "image" : "shuffled", indexName);
-            benchmark::RegisterBenchmark(name.c_str(), [=, &queries](auto& state) { run(state, queries, query); });
-        };
-        for (const uint32_t count : {50U, 200U}) {
-            add("radius" + std::to_string(count),
-                [&index, radius = radiusForMean(w, count)](const SurfacePoint& q, DensityScratch& s) {
-                    index.within(q.position, radius, s.found);
-                    return s.found.size();
-                });
-            add("knn" + std::to_string(count), [&index, count](const SurfacePoint& q, DensityScratch& s) {
-                index.nearest(q.position, count, kInfinity, s.found);
-                return s.found.size();
-            });
-        }
-        add("density20", [&index, radius = radiusForMean(w, 80)](const SurfacePoint& q, DensityScratch& s) {
-            const DensityQuery query{
-                .point = q, .sideNormal = q.ng, .minCount = 20, .minRadius = radius / 10, .maxRadius = radius};
-            float sum = 0;
-            const GatheredDisc disc = gatherPhotons(index, query, s, [&](uint32_t, float weight) { sum += weight; });
-            benchmark::DoNotOptimize(sum);
-            return disc.accepted;
+// makeQuery(subject) -> a query
+template <typename MakeQuery>
+void add(Subject& subject, const std::string& kind, bool imageOrder, const MakeQuery& makeQuery) {
+    const std::string name = fmt::format("{}/{}/{}/", subject.name(), kind, imageOrder ? "image" : "shuffled");
+    benchmark::RegisterBenchmark((name + "kd").c_str(), [=, &subject](benchmark::State& state) {
+        run(state, subject.index<KdIndex>(), subject.queries(imageOrder), makeQuery(subject));
+    });
+    benchmark::RegisterBenchmark((name + "flann").c_str(), [=, &subject](benchmark::State& state) {
+        run(state, subject.index<FlannIndex>(), subject.queries(imageOrder), makeQuery(subject));
+    });
+}
+
+void addQueries(Subject& subject) {
+    for (const bool imageOrder : {true, false}) {
+        for (const uint32_t count : {50U, 200U})
+            add(subject, "radius" + std::to_string(count), imageOrder,
+                [count](Subject& s) { return WithinRadius{s.radiusHolding(count)}; });
+        for (const uint32_t count : {50U, 200U})
+            add(subject, "knn" + std::to_string(count), imageOrder, [count](Subject&) { return Nearest{count}; });
+        add(subject, "density20", imageOrder, [](Subject& s) {
+            const auto photons = static_cast<float>(s.index<KdIndex>().tree().count);
+            return Density{std::sqrt(80 * s.workload().area / (kPi * photons))};
         });
     }
 }
@@ -175,16 +274,56 @@ void addBuild() {
     })->Unit(benchmark::kMillisecond);
 }
 
+// Prints both indices side by side at the end.
+class Comparison : public benchmark::ConsoleReporter {
+  public:
+    Comparison() : ConsoleReporter(OO_Tabular) {}  // no colours
+    void ReportRuns(const std::vector<Run>& runs) override {
+        ConsoleReporter::ReportRuns(runs);
+        for (const Run& run : runs) {
+            const std::string name = run.run_name.function_name;
+            const size_t slash = name.rfind('/');
+            if (run.run_type != Run::RT_Iteration || run.error_occurred) continue;
+            const double time = run.GetAdjustedCPUTime();
+            double& least = times_[name.substr(0, slash)].try_emplace(name.substr(slash + 1), time).first->second;
+            least = std::min(least, time);
+        }
+    }
+    void Finalize() override {
+        double logs = 0;
+        int cases = 0;
+        fmt::print("\n{:40}{:>10}{:>10}{:>8}\n", "ns a query", "FLANN", "packed", "ratio");
+        for (const auto& [name, times] : times_) {
+            if (times.count("kd") + times.count("flann") < 2) continue;
+            const double flann = times.at("flann"), kd = times.at("kd");
+            fmt::print("{:40}{:10.0f}{:10.0f}{:8.2f}\n", name, flann, kd, flann / kd);
+            if (name.find("density") != std::string::npos) continue;  // not a query of the index alone
+            logs += std::log(flann / kd);
+            ++cases;
+        }
+        if (cases > 0) fmt::print("{:60}{:8.2f}\n", "geometric mean without density", std::exp(logs / cases));
+    }
+
+  private:
+    std::map<std::string, std::map<std::string, double>> times_;  // ns; by case, by index
+};
+
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
     benchmark::Initialize(&argc, argv);
-    const Workload workloads[] = {concentrated(), box()};
-    for (const Workload& w : workloads) {
-        addQueries(w, *w.kd, "kd");
-        addQueries(w, *w.flann, "flann");
-    }
+    const bool withMap = argc == 3 && std::string(argv[1]) == "--map";
+    if (!withMap && benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+    Subject ball = withMap ? Subject("glass-sphere", [file = std::string(argv[2])] { return glassSphere(file); })
+                           : Subject("concentrated1M", concentrated);
+    Subject walls("box10M", box);
+    addQueries(ball);
+    addQueries(walls);
     addBuild();
-    benchmark::RunSpecifiedBenchmarks();
+    Comparison reporter;
+    benchmark::RunSpecifiedBenchmarks(&reporter);
     return 0;
+} catch (const Error& error) {  // a map that cannot be read
+    fmt::print(stderr, "bench_index: {}\n", error.what());
+    return 1;
 }

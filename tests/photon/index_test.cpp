@@ -118,6 +118,42 @@ TEST_CASE("all indices find the same photons at the same distances") {
         }
 }
 
+TEST_CASE("all indices find the same among a million photons") {
+    // A cube, a plane, a focus and a coarse grid at once: from sparse to 3000 photons at one place.
+    const size_t mixed[] = {0, 1, 3, 5};
+    Random random(8);
+    std::vector<Vec3> points(1'000'000);
+    for (Vec3& p : points) p = kClouds[mixed[random.bits() % 4]].point(random);
+    const PhotonTree tree = treeOf(points);
+    const KdIndex kd(view(tree));
+    const FlannIndex flann(view(tree));
+    const BruteIndex brute(view(tree));
+    NeighbourList a, b, c;
+    for (int i = 0; i < 48; ++i) {
+        const Vec3 centre = (i % 8 == 7 ? 1000.0F : 1.0F) * queryPoint(tree, random, i);
+        const uint32_t k = i % 3 == 0 ? 200 : 50;
+        CAPTURE(i);
+        kd.nearest(centre, k, kInfinity, a);
+        flann.nearest(centre, k, kInfinity, b);
+        REQUIRE(a.size() == k);
+        // Brute force sorts only what is no farther than the tree's answer: a nearer photon that it missed is there.
+        const float reach = std::sqrt(a[k - 1].distanceSquared);
+        brute.nearest(centre, k, 1.001F * reach + 1e-6F, c);
+        REQUIRE(std::equal(a.begin(), a.end(), c.begin(), c.end()));
+        REQUIRE(std::equal(b.begin(), b.end(), c.begin(), c.end()));
+        // As far as the last one itself, which is out or in by one rounding, and farther.
+        for (const float radius : {reach, 1.5F * reach}) {
+            if (i % 8 == 7 && radius > reach) continue;  // holds all photons
+            CAPTURE(radius);
+            kd.within(centre, radius, a);
+            flann.within(centre, radius, b);
+            brute.within(centre, radius, c);
+            REQUIRE(std::equal(a.begin(), a.end(), c.begin(), c.end()));
+            REQUIRE(sorted(b) == sorted(c));
+        }
+    }
+}
+
 TEST_CASE("a query that is not finite finds nothing") {
     const PhotonTree tree = treeOf(pointsOf(kClouds[0], 1000));
     const FlannIndex flann(view(tree));
