@@ -1,0 +1,202 @@
+#!/usr/bin/env python3
+"""The benchmark's own arithmetic against known answers. Needs numpy.
+
+usage: python3 -m unittest discover -s tests/bench -p 'convergence_test.py'
+"""
+import re
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+import errors
+import methods
+import page
+import results
+
+SIZE = 96
+NOISE, BIAS, TRUTH_NOISE, SEEDS = .03, .02, .05, 4  # the truth's noise is the largest: not taken out, it shows
+
+
+def exact():
+    y, x, c = np.mgrid[:SIZE, :SIZE, :3] / SIZE
+    return .2 + x + .5 * y * (c + 1)
+
+
+def noisy_truth(random):
+    halves = tuple(exact() + TRUTH_NOISE * random.standard_normal(exact().shape) for _ in range(2))
+    return errors.Truth((halves[0] + halves[1]) / 2, halves)
+
+
+def pictures(random, noise=NOISE, bias=BIAS, seeds=SEEDS):
+    return [exact() + bias + noise * random.standard_normal(exact().shape) for _ in range(seeds)]
+
+
+def made(path_class='whole', method='render', budget=10., cpu=10., error=1e-3, digest='same'):
+    figure = dict(error=error, error_sem=error / 10, truth_noise=0, variance=None, bias2=None, bias2_sem=None)
+    return {'scene': 'oracle/pool', 'class': path_class, 'method': method, 'budget': budget, 'digest': digest,
+            'cpu': [cpu], 'figure': 'relMSE', 'relMSE': figure, 'norm': figure, 'ratio': 1., 'not_finite': 0,
+            'pixels': 1, 'corrected': True}
+
+
+class Errors(unittest.TestCase):
+    def setUp(self):
+        self.random = np.random.default_rng(7)
+        self.truth = noisy_truth(self.random)
+        self.weight = 1 / (exact() ** 2 + errors.DARK)
+
+    def assertWithin(self, found, expected, sem):
+        self.assertLess(abs(found - expected), 4 * sem, f'found {found}, expected {expected} +- {sem}')
+
+    def test_known_noise_and_bias_are_recovered_apart(self):
+        for noise, bias in ((NOISE, 0), (0, BIAS), (NOISE, BIAS)):
+            found = errors.figures(pictures(self.random, noise, bias), self.truth)
+            for name, mean_weight in (('relMSE', self.weight.mean()), ('norm', 1 / (exact() ** 2).mean())):
+                with self.subTest(noise=noise, bias=bias, figure=name):
+                    f, tolerance = found[name], .02  # of the weights, which the truth's noise changes a little
+                    self.assertWithin(f['error'], (noise ** 2 + bias ** 2) * mean_weight,
+                                      f['error_sem'] + tolerance * noise ** 2 * mean_weight)
+                    self.assertWithin(f['bias2'], bias ** 2 * mean_weight, f['bias2_sem'])
+                    expected = noise ** 2 * mean_weight
+                    self.assertAlmostEqual(f['variance'], expected, delta=.03 * expected + 1e-12)
+
+    def test_error_is_the_sum_of_variance_and_bias(self):
+        found = errors.figures(pictures(self.random), self.truth)
+        for name in ('relMSE', 'norm'):
+            self.assertAlmostEqual(found[name]['error'], found[name]['variance'] + found[name]['bias2'], places=12)
+
+    def test_the_standard_error_is_that_of_repeated_measurements(self):
+        repeated = [errors.figures(pictures(self.random), noisy_truth(self.random)) for _ in range(60)]
+        for name in ('error', 'bias2'):
+            for figure, at_most in (('norm', 1.35), ('relMSE', 10)):  # relMSE: too large, for its weights are uneven
+                spread = np.std([r[figure][name] for r in repeated], ddof=1)
+                ratio = np.mean([r[figure][f'{name}_sem'] for r in repeated]) / spread
+                self.assertTrue(.7 < ratio < at_most, f'{figure} {name}: {ratio}')
+
+    def test_without_halves_the_noise_of_the_truth_is_in_the_error(self):
+        found = errors.figures(pictures(self.random), errors.Truth(self.truth.mean))
+        self.assertFalse(found['corrected'])
+        expected = (NOISE ** 2 + BIAS ** 2 + TRUTH_NOISE ** 2 / 2) / (exact() ** 2).mean()
+        self.assertAlmostEqual(found['norm']['error'] / expected, 1, delta=.03)
+
+    def test_a_mask_keeps_the_rest_out(self):
+        mask = np.zeros((SIZE, SIZE), bool)
+        mask[10:50, 20:70] = True
+        spoilt = pictures(self.random, noise=0)
+        for p in spoilt:
+            p[~mask] += 100
+        found = errors.figures(spoilt, self.truth, mask)
+        self.assertEqual(found['pixels'], 2000)
+        self.assertWithin(found['norm']['error'], BIAS ** 2 / (exact()[mask] ** 2).mean(), found['norm']['error_sem'])
+
+    def test_one_seed_tells_no_variance(self):
+        found = errors.figures(pictures(self.random, seeds=1), self.truth)
+        self.assertIsNone(found['relMSE']['variance'])
+        self.assertIsNone(found['relMSE']['bias2'])
+
+    def test_pixels_that_are_not_finite_are_counted(self):
+        spoilt = pictures(self.random, seeds=1)
+        spoilt[0][3, 4] = np.nan
+        found = errors.figures(spoilt, self.truth)
+        self.assertEqual(found['not_finite'], 1)
+        self.assertTrue(np.isfinite(found['relMSE']['error']))
+
+    def test_a_larger_picture_is_averaged(self):
+        small = np.arange(2 * 3 * 3, dtype=float).reshape(2, 3, 3)
+        np.testing.assert_array_equal(errors.box_average(small.repeat(4, 0).repeat(4, 1), 2), small)
+
+
+class TimeToReach(unittest.TestCase):
+    def setUp(self):
+        self.rows = [made(cpu=t, error=1 / t) for t in (3., 30., 300.)]
+
+    def test_between_measurements_it_is_read_off_in_log_log(self):
+        sign, seconds = results.time_to_reach(self.rows, 1 / 100)
+        self.assertEqual(sign, '')
+        self.assertAlmostEqual(seconds, 100)
+
+    def test_outside_it_says_so(self):
+        self.assertEqual(results.time_to_reach(self.rows, 1), ('<', 3.))
+        self.assertEqual(results.time_to_reach(self.rows, 1e-6), ('>', 300.))
+
+
+class Compare(unittest.TestCase):
+    def test_ratios_are_new_over_old(self):
+        old = [made(budget=b, cpu=b, error=1 / b) for b in (10., 40.)]
+        new = [made(budget=b, cpu=1.1 * b, error=.25 / b) for b in (10., 40.)]
+        compared, left = results.ratios(old, new)
+        self.assertEqual(left, [])
+        for r in compared:
+            self.assertAlmostEqual(r['error'], .25)
+            self.assertAlmostEqual(r['cpu'], 1.1)
+            self.assertAlmostEqual(r['sem'], .25 * .1 * 2 ** .5)
+        self.assertEqual([r['speed'] for r in compared], [None, 40 / 11])  # the first lies before all that was measured
+
+    def test_geometric_means_weigh_a_gain_as_a_loss(self):
+        self.assertAlmostEqual(results.geometric_mean([.5, 2]), 1)
+        old = [made(method=m) for m in ('render', 'path')]
+        new = [made(method='render', error=5e-4), made(method='path', error=2e-3)]
+        report = results.compare_report(dict(rows=old), dict(rows=new))
+        self.assertRegex(report, r'(?m)^all +all +2 +1\.000 +1\.000')
+
+    def test_what_is_in_one_only_or_differs_is_listed(self):
+        old = [made(), made(budget=3.), made(method='path', digest='other')]
+        _, left = results.ratios(old, [made(), made(method='path')])
+        self.assertEqual({(key[2], key[3]): why for key, why in left},
+                         {('render', 3.): 'only in the old', ('path', 10.): 'scene, truth or mask differ'})
+
+
+class Report(unittest.TestCase):
+    def rows(self):
+        rows = [made(path_class=c, method=m, budget=b, cpu=b, error=e / b)
+                for c in ('whole', 'alone LS+DE', 'alone L[DS]?E')
+                for m, e in (('render', 1), ('path & co', 5)) for b in (3., 10.)]
+        rows[0]['relMSE'] = rows[0]['relMSE'] | dict(variance=.3, bias2=-1e-5, bias2_sem=1e-4)
+        return rows
+
+    def test_the_page_is_well_formed_and_needs_nothing_else(self):
+        html = page.page(dict(rows=self.rows(), seeds=1, program='0' * 64, left_out=[['a', 'b', '<c>']]))
+        plots = re.findall(r'<svg.*?</svg>', html, re.S)
+        self.assertEqual(len(plots), 1 + 3)
+        for plot in plots:
+            ElementTree.fromstring(plot)
+        self.assertNotIn('http', html)
+        self.assertIn('&lt;c&gt;', html)
+
+    def test_a_figure_below_its_noise_is_shown_as_a_limit(self):
+        self.assertEqual(page.at_most(-1e-5, 1e-4), (2e-4, True))
+        self.assertEqual(page.at_most(1e-3, 1e-4), (1e-3, False))
+
+    def test_the_yardstick_divides_equal_budgets(self):
+        rows = self.rows()
+        rows[-1]['relMSE'] = rows[-1]['relMSE'] | dict(error=.25)
+        _, lines = results.yardstick(rows)
+        self.assertEqual([line[4] for line in lines], ['1.00', '1.00', '1.00', '2.00'])
+
+
+class Methods(unittest.TestCase):
+    SCENE = SimpleNamespace(glb=Path('scene.glb'), mitsuba=None)
+
+    def run_python(self, code):
+        method = methods.Method(f"{{python}} -c '{code}' {{picture}}")
+        with tempfile.TemporaryDirectory() as folder:
+            return methods.run(method, self.SCENE, 'lsde', 5, 1, Path(folder))
+
+    def test_cpu_seconds_are_those_of_the_child(self):
+        run = self.run_python('import sys, time\nwhile time.process_time() < .3: pass\nopen(sys.argv[1], "w")')
+        self.assertGreaterEqual(run.cpu, .29)
+
+    def test_a_failure_is_one_line(self):
+        with self.assertRaisesRegex(methods.RunError, 'exit code 3: no light'):
+            self.run_python('import sys\nprint("warning: x\\nno light", file=sys.stderr)\nsys.exit(3)')
+        with self.assertRaisesRegex(methods.RunError, 'no picture'):
+            self.run_python('pass')
+
+
+if __name__ == '__main__':
+    unittest.main()
