@@ -17,7 +17,7 @@ std::optional<std::filesystem::path> cachedMapPath(const Scene& scene, const Emi
         return {};
     std::string key = fmt::format("lsde {} map {} scene {} seed {} photons {} depth {} store {} aim {} lights",
                                   LSDE_VERSION, kMapVersion, scene.hash(), seed, settings.photons, settings.maxDepth,
-                                  settings.storeAll, settings.aim);
+                                  name(settings.store), settings.aim);
     for (const std::string& light : settings.lights) key += fmt::format(" {}:{}", light.size(), light);
     const XXH128_hash_t h = XXH3_128bits(key.data(), key.size());
     return folder / "lsde" / fmt::format("{:016x}{:016x}.lsmap", h.high64, h.low64);

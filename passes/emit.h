@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/run.h"
+#include "passes/light_tracer.h"
 #include "photon/map_file.h"
 #include "scene/scene.h"
 #include "transport/emission.h"
@@ -16,7 +17,7 @@ namespace lsde {
 struct EmitSettings {
     uint64_t photons = 1000000;  // light paths of the whole emission, over all shards
     uint32_t maxDepth = 64;      // events of a path
-    bool storeAll = false;       // also the classes indirect and direct
+    Store store = Store::Indirect;
     bool aim = true;
     std::vector<std::string> lights;  // by name; empty: all
     // Paths of this run: [begin, end) of the whole emission's.
@@ -29,7 +30,7 @@ IndexRange shardRange(uint64_t photons, uint64_t i, uint64_t n);
 // An emission that can go on: paths in order, photons and ledger so far.
 class Emission {
   public:
-    Emission(const Scene& scene, const EmitSettings& settings, uint64_t seed);
+    Emission(const Scene& scene, const EmitSettings& settings, RunContext& run);
 
     // Traces the paths [next, next + count), in parallel; all are done when it returns, or none are kept (Interrupted).
     void trace(uint64_t next, uint64_t count, RunContext& run);
@@ -45,6 +46,8 @@ class Emission {
     EmitSettings settings_;
     uint64_t seed_;
     EmissionSampler sources_;
+    DiffuseAim diffuseAim_;
+    LightTracerInput tracer_;
     std::array<std::vector<PackedPhoton>, kPhotonClasses> photons_;
     Ledger ledger_;
     std::vector<IndexRange> ranges_;

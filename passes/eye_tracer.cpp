@@ -27,6 +27,8 @@ struct EyePath {
     bool mayBranch = true;  // has not gone on in several directions yet
     bool lastDelta = true;  // the last bend, or the camera itself
     bool metDiffuse = false;
+    bool endsAtDiffuse = false;  // the map owns what reaches a diffuse lobe of this vertex, but for direct light
+    float bsdfSamples = 1;       // directions sampled at the last non-delta vertex, for MIS
 };
 
 struct EyeScratch {
@@ -48,7 +50,8 @@ EyeTracer::EyeTracer(const Scene& scene, const Camera& camera, const LightSample
       seed_(seed),
       cameraMedia_(scene.mediaAt(camera.description().position)) {}
 
-void EyeTracer::render(Film& film, uint64_t begin, uint64_t end, RunContext& run, EyeCounters& counters) const {
+void EyeTracer::render(Film& film, std::vector<SampleStatistics>& statistics, const SamplePlan& plan,
+                       const SampleSpan& span, RunContext& run, EyeCounters& counters) const {
     const int tilesX = (film.width() + kTile - 1) / kTile, tilesY = (film.height() + kTile - 1) / kTile;
     std::mutex mutex;
     run.pool.forEach(static_cast<size_t>(tilesX) * static_cast<size_t>(tilesY), [&](size_t tile) {
@@ -57,11 +60,16 @@ void EyeTracer::render(Film& film, uint64_t begin, uint64_t end, RunContext& run
         const int x0 = static_cast<int>(tile % static_cast<size_t>(tilesX)) * kTile;
         const int y0 = static_cast<int>(tile / static_cast<size_t>(tilesX)) * kTile;
         for (int y = y0; y < std::min(y0 + kTile, film.height()); ++y)
-            for (int x = x0; x < std::min(x0 + kTile, film.width()); ++x)
-                for (uint64_t i = begin; i < end; ++i) {
-                    samplePixel(camera_.filmX() + x, camera_.filmY() + y, i, scratch);
+            for (int x = x0; x < std::min(x0 + kTile, film.width()); ++x) {
+                const size_t pixel =
+                    static_cast<size_t>(y) * static_cast<size_t>(film.width()) + static_cast<size_t>(x);
+                const uint64_t end = plan.count(pixel, span.end);
+                for (uint64_t i = plan.count(pixel, span.begin); i < end; ++i) {
+                    samplePixel(camera_.filmX() + x, camera_.filmY() + y, span.first + i, scratch);
+                    statistics[pixel].add(luminance(scratch.sums.layer[0]));
                     scratch.sums.addTo(film, x, y);
                 }
+            }
         const std::scoped_lock lock(mutex);
         counters.rays += scratch.walk.rays;
         counters.notFinite += scratch.sums.notFinite;
@@ -99,8 +107,15 @@ void EyeTracer::follow(EyePath& path, EyeScratch& scratch) const {
         if (path.fresh) recordFirst(v, scratch.sums);
         path.fresh = false;
         addEmission(v, path, scratch);
+        if (path.walk.onlyEmitters()) {
+            if (!passStraight(v, path)) return;
+            continue;
+        }
         if (settings_.maxDepth > 0 && path.depth >= settings_.maxDepth) return;
         if (hasDiffuseLobe(v.bsdf) || hasGlossyLobe(v.bsdf)) {
+            path.endsAtDiffuse = indirectFromMap(v);
+            const bool ends = path.endsAtDiffuse && std::holds_alternative<DiffuseBsdf>(v.bsdf);
+            path.bsdfSamples = ends ? lights_.bsdfSamples(v) : 1;
             addDirect(v, path, scratch);
             if (photons_ != nullptr) addPhotons(v, path, scratch);
         }
@@ -130,6 +145,7 @@ void EyeTracer::addEmission(const Vertex& v, const EyePath& path, EyeScratch& sc
 
 void EyeTracer::addDirect(const Vertex& v, EyePath& path, EyeScratch& scratch) const {
     DirectLightQuery query;
+    query.bsdfSamples = path.bsdfSamples;
     query.glossy = photons_ == nullptr || path.walk.samplesLight(glossyClass(v.bsdf));
     EyePathState diffuse = path.mask, glossy = path.mask;
     layers_.filter().prepend(diffuse, Event::Diffuse);
@@ -149,6 +165,12 @@ void EyeTracer::addDirect(const Vertex& v, EyePath& path, EyeScratch& scratch) c
     if (!isBlack(d.glossy)) scratch.sums.contribute(layers_, path.state.throughput * d.glossy, light, glossy);
 }
 
+// Light that met a Diffuse vertex before it comes to a Lambertian lobe is the map's, if the map has it.
+bool EyeTracer::indirectFromMap(const Vertex& v) const {
+    return photons_ != nullptr && photons_->indirect() != nullptr && scene_.meshes()[v.surface.mesh].receiver &&
+           hasDiffuseLobe(v.bsdf);
+}
+
 void EyeTracer::addPhotons(const Vertex& v, const EyePath& path, EyeScratch& scratch) const {
     if (!scene_.meshes()[v.surface.mesh].receiver) return;
     const bool diffuse = hasDiffuseLobe(v.bsdf), glossy = hasGlossyLobe(v.bsdf);
@@ -158,8 +180,6 @@ void EyeTracer::addPhotons(const Vertex& v, const EyePath& path, EyeScratch& scr
     EyePathState diffuseMask = path.mask, glossyMask = path.mask;
     layers_.filter().prepend(diffuseMask, Event::Diffuse);
     layers_.filter().prepend(glossyMask, Event::Glossy);
-    if (!layers_.photonsCount(diffuseMask) && !layers_.photonsCount(glossyMask)) return;
-
     PhotonGatherQuery query;
     query.point = {v.surface.position, v.surface.ng, v.surface.ns, path.metDiffuse ? 0 : path.width};
     query.sideNormal = v.sideNormal();
@@ -167,27 +187,38 @@ void EyeTracer::addPhotons(const Vertex& v, const EyePath& path, EyeScratch& scr
     query.glossyOnly = !diffuse && !glossyIsWide;
     query.glossyFromAll = glossyIsWide;
     query.glossyFromFlagged = glossyGathers;
-    const GatheredLight& light = photons_->gather(query, v.bsdf, v.frame, v.wo, scratch.gather);
-    ++scratch.counters.gathers;
-    scratch.counters.gathered += light.photons;
-    for (const GatheredPaths& g : light.paths) {
-        const Rgb fromDiffuse = path.state.throughput * g.diffuse, fromGlossy = path.state.throughput * g.glossy;
-        if (g.path.overflowed()) {
-            if (layers_.hasOnly()) continue;
-            scratch.sums.layer[0] += fromDiffuse + fromGlossy;
-            scratch.sums.layer[static_cast<size_t>(layers_.unclassified())] += fromDiffuse + fromGlossy;
-            continue;
+    const auto add = [&](const ClassGather& from, const GatheredLight& light) {
+        ++scratch.counters.gathers;
+        scratch.counters.gathered += light.photons;
+        // The full picture gets the sum over all photons, which does not depend on how layers group them.
+        if (!layers_.hasOnly()) scratch.sums.addFull(path.state.throughput * light.total);
+        for (const GatheredPaths& g : light.paths) {
+            const Rgb fromDiffuse = path.state.throughput * g.diffuse, fromGlossy = path.state.throughput * g.glossy;
+            const auto& state = from.groups().state(g.group);
+            if (!state) {
+                if (!layers_.hasOnly())
+                    scratch.sums.layer[static_cast<size_t>(layers_.unclassified())] += fromDiffuse + fromGlossy;
+                continue;
+            }
+            if (!isBlack(fromDiffuse)) scratch.sums.contributeToLayers(layers_, fromDiffuse, *state, diffuseMask);
+            if (!isBlack(fromGlossy)) scratch.sums.contributeToLayers(layers_, fromGlossy, *state, glossyMask);
         }
-        const LightPathState state = layers_.filter().stateOf(g.path);
-        if (!isBlack(fromDiffuse)) scratch.sums.contribute(layers_, fromDiffuse, state, diffuseMask);
-        if (!isBlack(fromGlossy)) scratch.sums.contribute(layers_, fromGlossy, state, glossyMask);
-    }
+    };
+    if (layers_.causticCounts(diffuseMask) || layers_.causticCounts(glossyMask))
+        add(photons_->caustic(), photons_->caustic().gather(query, v.bsdf, v.frame, v.wo, scratch.gather));
+    if (!path.endsAtDiffuse || !diffuse || !layers_.indirectCounts(diffuseMask)) return;
+    query.glossyFromAll = query.glossyFromFlagged = false;
+    add(*photons_->indirect(), photons_->indirect()->gather(query, v.bsdf, v.frame, v.wo, scratch.gather));
 }
 
 // Goes on from the vertex: all delta lobes as branches while there are splits left, else one sampled lobe. False: the
 // path ends (its branches are on the stack).
 bool EyeTracer::split(const Vertex& v, EyePath& path, EyeScratch& scratch) const {
     BsdfSample sample;
+    if (path.bsdfSamples < 1) {
+        if (path.sampler.next() >= path.bsdfSamples) return false;
+        path.state.throughput /= path.bsdfSamples;
+    }
     if (!hasDelta(v.bsdf)) return bounce(v, path, scratch);
     if (path.splits == 0 || std::holds_alternative<MirrorBsdf>(v.bsdf)) {
         const float uLobe = path.sampler.next();
@@ -225,7 +256,8 @@ bool EyeTracer::split(const Vertex& v, EyePath& path, EyeScratch& scratch) const
 bool EyeTracer::bounce(const Vertex& v, EyePath& path, EyeScratch& scratch) const {
     const float uLobe = path.sampler.next();
     const Vec2 u = path.sampler.next2D();
-    const int branches = path.mayBranch ? settings_.indirectBranches : 1;
+    const bool ends = path.endsAtDiffuse && std::holds_alternative<DiffuseBsdf>(v.bsdf);
+    const int branches = path.mayBranch && !ends ? settings_.indirectBranches : 1;
     path.mayBranch = false;
     path.state.throughput /= static_cast<float>(branches);
     BsdfSample sample;
@@ -239,10 +271,22 @@ bool EyeTracer::bounce(const Vertex& v, EyePath& path, EyeScratch& scratch) cons
     return sampleBsdf(v.bsdf, v.wo, uLobe, u, sample) && step(v, sample, path);
 }
 
+// Through a smooth thin wall, on the way to an emitter. False: there is something else.
+bool EyeTracer::passStraight(const Vertex& v, EyePath& path) const {
+    if (!hasDelta(v.bsdf)) return false;
+    const DeltaLobes lobes = deltaLobes(v.bsdf, v.wo);
+    for (int i = 0; i < lobes.count; ++i) {
+        const BsdfSample& lobe = lobes.lobe[static_cast<size_t>(i)];
+        if (lobe.straight) return step(v, lobe, path);
+    }
+    return false;
+}
+
 bool EyeTracer::step(const Vertex& v, const BsdfSample& sample, EyePath& path) const {
     if (!scatter(v, sample, Quantity::Radiance, path.state)) return false;
     const VertexClass c = classOf(v.bsdf, sample);
-    path.walk.pass(c);
+    path.walk.pass(c, path.endsAtDiffuse && sample.event == Event::Diffuse);
+    path.endsAtDiffuse = false;
     layers_.filter().prepend(path.mask, sample.event);
     if (!layers_.alive(path.mask)) return false;
     ++path.depth;
@@ -259,6 +303,8 @@ bool EyeTracer::step(const Vertex& v, const BsdfSample& sample, EyePath& path) c
             const BsdfEval f = evalBsdf(v.bsdf, v.wo, sample.wi);
             path.misPdf = sample.event == Event::Diffuse ? f.diffuse.pdfW : f.glossy.pdfW;
         }
+        path.misPdf *= path.bsdfSamples;
+        path.bsdfSamples = 1;
         path.metDiffuse |= c == VertexClass::Diffuse;
     }
     // Russian roulette: by the lobe's weight from the second diffuse event on, which keeps the throughput even; by the

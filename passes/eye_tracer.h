@@ -6,6 +6,7 @@
 
 #include "passes/gather.h"
 #include "passes/layers.h"
+#include "passes/sample_plan.h"
 #include "path/ownership.h"
 #include "sampling/sampler.h"
 #include "transport/direct_light.h"
@@ -20,6 +21,11 @@ struct EyeSettings {
     float rouletteThreshold = 0.02F;  // throughput below which Russian roulette may end a path
     int freeDepth = 24;               // events after which it may end any
     int maxDepth = 0;                 // events; 0: no limit
+};
+
+struct SampleSpan {
+    uint64_t first = 0;           // number of a pixel's first sample
+    uint64_t begin = 0, end = 0;  // samples a pixel on average, since the first
 };
 
 struct EyeCounters {
@@ -38,8 +44,10 @@ class EyeTracer {
     EyeTracer(const Scene& scene, const Camera& camera, const LightSampler& lights, const RenderLayers& layers,
               const PhotonGather* photons, const EyeSettings& settings, uint64_t seed);
 
-    // Samples [begin, end) of every pixel of the crop, in tiles over the pool's threads.
-    void render(Film& film, uint64_t begin, uint64_t end, RunContext& run, EyeCounters& counters) const;
+    // Samples of every pixel of the crop that the plan adds between the means `begin` and `end`, in tiles over the
+    // pool's threads; their numbers start at `first`.
+    void render(Film& film, std::vector<SampleStatistics>& statistics, const SamplePlan& plan, const SampleSpan& span,
+                RunContext& run, EyeCounters& counters) const;
 
   private:
     void samplePixel(int x, int y, uint64_t index, EyeScratch& scratch) const;
@@ -47,9 +55,11 @@ class EyeTracer {
     void recordFirst(const Vertex& v, SampleSums& sums) const;
     void addEmission(const Vertex& v, const EyePath& path, EyeScratch& scratch) const;
     void addDirect(const Vertex& v, EyePath& path, EyeScratch& scratch) const;
+    bool indirectFromMap(const Vertex& v) const;
     void addPhotons(const Vertex& v, const EyePath& path, EyeScratch& scratch) const;
     bool split(const Vertex& v, EyePath& path, EyeScratch& scratch) const;
     bool bounce(const Vertex& v, EyePath& path, EyeScratch& scratch) const;
+    bool passStraight(const Vertex& v, EyePath& path) const;
     bool step(const Vertex& v, const BsdfSample& sample, EyePath& path) const;
 
     const Scene& scene_;

@@ -11,15 +11,21 @@ namespace {
 // would carry any weight, so it is bounded, and counted.
 constexpr float kMaxShadingWeight = 10;
 
+// Where the normals agree so closely a Lambertian surface needs no photon's direction.
+constexpr float kFlat = 0.999999F;
+
+// A shading normal further than this (cosine) from the geometric one weighs each photon differently.
+constexpr float kBentNormal = 0.998F;
+
 // Area on which the class's photons lie: that of the objects on which any landed.
-double litArea(const Scene& scene, const PhotonMap& map) {
+double litArea(const Scene& scene, const PhotonMap& map, PhotonClass c) {
     const auto& flux = map.header.ledger.flux;
     const size_t objects = map.header.objects.size();
     double area = 0;
     for (const MeshInfo& mesh : scene.meshes()) {
         // A map of another scene (--other-scene) names objects that are not there.
         if (mesh.object >= objects) continue;
-        const size_t at = static_cast<size_t>(PhotonClass::Caustic) * objects + mesh.object;
+        const size_t at = static_cast<size_t>(c) * objects + mesh.object;
         if (at < flux.size() && !(flux[at] == FixedRgb())) area += mesh.area;
     }
     return area;
@@ -32,9 +38,10 @@ AnyIndex makeIndex(IndexKind kind, const PhotonTreeView& tree, RunContext& run) 
 }
 
 // The radius that holds `count` photons of the class at its mean density on what is lit.
-float radiusAtMean(const GatherInput& input, const PhotonTreeView& tree, uint32_t count) {
+float radiusAtMean(const GatherInput& input, PhotonClass c, float count) {
+    const PhotonTreeView tree = input.map.photons(c);
     if (tree.count == 0) return 0;
-    double area = litArea(input.scene, input.map);
+    double area = litArea(input.scene, input.map, c);
     if (!(area > 0)) area = kPi * square(input.scene.boundingSphere().radius);
     return static_cast<float>(std::sqrt(count * area / (kPi * static_cast<double>(tree.count))));
 }
@@ -42,76 +49,134 @@ float radiusAtMean(const GatherInput& input, const PhotonTreeView& tree, uint32_
 // A pilot radius may exceed that of the mean density, where photons are sparse.
 constexpr float kPilotRadius = 4;
 
-}  // namespace
+struct Receiver {
+    const PhotonGatherQuery& query;
+    const Bsdf& bsdf;
+    const Frame& frame;
+    Vec3 wo;
+};
 
-PhotonGather::PhotonGather(const GatherInput& input, const GatherSettings& settings, RunContext& run)
-    : tree_(input.map.photons(PhotonClass::Caustic)),
-      index_(makeIndex(settings.index, tree_, run)),
-      settings_(settings),
-      maxRadius_(radiusAtMean(input, tree_, settings.maxCountAtMean)) {
-    if (settings.progressive.pilot != nullptr) maxRadius_ *= kPilotRadius;
-    extent_ = SurfaceExtent(input.creases, maxRadius_);
-    const uint64_t paths = input.map.header.emittedPaths();
-    perPath_ = paths > 0 ? 1 / static_cast<double>(paths) : 0;
-    if (!std::all_of(input.lights.begin(), input.lights.end(), [](bool s) { return s; })) lights_ = input.lights;
+// Adds one photon's light by lobe; that of a Lambertian surface without its albedo / pi.
+void scatterPhoton(const PhotonPayload& p, float kernel, const Receiver& at, GatheredPaths& out,
+                   GatherScratch& scratch) {
+    const Vec3 direction = unpackDirection(p.direction);
+    const Vec3 wi = at.frame.toLocal(direction);
+    float shading = std::fabs(wi.z / glm::dot(direction, at.query.point.ng));
+    if (!(shading <= kMaxShadingWeight)) {
+        shading = kMaxShadingWeight;
+        ++scratch.clamped;
+    }
+    const Rgb power = unpackPower(p.power) * (kernel * shading);
+    if (std::holds_alternative<DiffuseBsdf>(at.bsdf)) {
+        if (wi.z * at.wo.z > 0) out.diffuse += power;
+        return;
+    }
+    const BsdfEval f = evalBsdf(at.bsdf, at.wo, wi);
+    if (!at.query.glossyOnly) out.diffuse += power * f.diffuse.f;
+    if (at.query.glossyFromAll || (at.query.glossyFromFlagged && (p.flags & kGlossyGather) != 0))
+        out.glossy += power * f.glossy.f;
 }
 
-DensityQuery PhotonGather::densityQuery(const PhotonGatherQuery& query, GatherScratch& scratch) const {
+PathGroups groupsOf(const GatherInput& input, const PhotonTreeView& tree, RunContext& run) {
+    const PhaseTimer timer(run, "group photons");
+    return {input.filter, tree.count,
+            [&](size_t i) {
+                const PhotonPayload& p = tree.payload[i];
+                return input.lights[p.light] ? std::optional(PathCode(p.path)) : std::nullopt;
+            },
+            run.pool};
+}
+
+}  // namespace
+
+ClassGather::ClassGather(const GatherInput& input, PhotonClass c, IndexKind kind, const RadiusRule& rule,
+                         const ProgressiveRadius& progressive, RunContext& run)
+    : tree_(input.map.photons(c)),
+      index_(makeIndex(kind, tree_, run)),
+      rule_(rule),
+      progressive_(progressive),
+      groups_(groupsOf(input, tree_, run)),
+      maxRadius_(radiusAtMean(input, c, rule.growthAtMean)),
+      reach_(std::max(maxRadius_, radiusAtMean(input, c, rule.reachAtMean))) {
+    if (progressive.pilot != nullptr) maxRadius_ *= kPilotRadius;
+    extent_ = SurfaceExtent(input.creases, std::max(maxRadius_, reach_));
+    const uint64_t paths = input.map.header.emittedPaths();
+    perPath_ = paths > 0 ? 1 / static_cast<double>(paths) : 0;
+    if (progressive.pilot == nullptr)
+        cache_ = std::make_unique<IrradianceCache>(
+            PhotonSource{index_, extent_, groups_.all(), groups_.size(), perPath_, reach_}, rule.irradiance);
+}
+
+DensityQuery ClassGather::densityQuery(const PhotonGatherQuery& query, GatherScratch& scratch) const {
     DensityQuery density;
     density.point = query.point;
     density.sideNormal = query.sideNormal;
     density.medium = query.medium;
-    density.minCount = settings_.minCount;
+    density.minCount = rule_.minCount;
     density.requiredFlags = query.glossyOnly ? kGlossyGather : 0;
-    density.minRadius = std::min(settings_.footprintShare * query.point.footprint, maxRadius_);
     density.maxRadius = maxRadius_;
-    const ProgressiveRadius& progressive = settings_.progressive;
-    if (progressive.pilot != nullptr) {
+    if (progressive_.pilot != nullptr) {
         const float r1 =
-            distanceToKth(*progressive.pilot, query.point.position, progressive.k, maxRadius_, scratch.pilot);
-        density.minRadius = density.maxRadius = r1 * progressive.scale;
+            distanceToKth(*progressive_.pilot, query.point.position, progressive_.k, maxRadius_, scratch.pilot);
+        density.minRadius = density.maxRadius = r1 * progressive_.scale;
+    } else {
+        density.minRadius = std::min(rule_.footprintShare * query.point.footprint, maxRadius_);
     }
     return density;
 }
 
-const GatheredLight& PhotonGather::gather(const PhotonGatherQuery& query, const Bsdf& bsdf, const Frame& frame, Vec3 wo,
-                                          GatherScratch& scratch) const {
+// Whether the light was found in the cache; else `density` gets the bandwidth as its least radius.
+bool ClassGather::known(const PhotonGatherQuery& query, DensityQuery& density, const Bsdf& bsdf,
+                        GatherScratch& scratch) const {
+    if (cache_ == nullptr) return false;
+    const auto* diffuse = std::get_if<DiffuseBsdf>(&bsdf);
+    const bool even = diffuse != nullptr && glm::dot(query.point.ng, query.point.ns) > kBentNormal;
+    const CachedLight light = cache_->at(density, even, scratch.bandwidth);
+    if (!light.irradiance.empty()) {
+        const Rgb albedo = diffuse->albedo * kInvPi;
+        for (size_t g = 0; g < groups_.size(); ++g)
+            if (!isBlack(light.irradiance[g]))
+                scratch.light.paths.push_back({static_cast<uint16_t>(g), albedo * light.irradiance[g]});
+        scratch.light.total = albedo * light.irradiance[groups_.size()];
+        return true;
+    }
+    density.minRadius = std::max(density.minRadius, light.bandwidth.radius);
+    return false;
+}
+
+const GatheredLight& ClassGather::gather(const PhotonGatherQuery& query, const Bsdf& bsdf, const Frame& frame, Vec3 wo,
+                                         GatherScratch& scratch) const {
     GatheredLight& out = scratch.light;
     out.paths.clear();
+    out.total = Rgb(0);
     out.photons = 0;
     if (empty() || glm::dot(query.sideNormal, frame.toWorld(wo)) <= 0) return out;
-    const DensityQuery density = densityQuery(query, scratch);
+    DensityQuery density = densityQuery(query, scratch);
+    if (known(query, density, bsdf, scratch)) return out;
     const SurfaceAround& surface = scratch.surface;
-    extent_.around(query.point.position, query.point.ng, density.maxRadius, scratch.surface);
+    extent_.around(query.point.position, query.point.ng, std::max(density.minRadius, density.maxRadius),
+                   scratch.surface);
     const auto* diffuse = std::get_if<DiffuseBsdf>(&bsdf);
+    const bool flat = diffuse != nullptr && glm::dot(query.point.ng, query.point.ns) > kFlat;
+    GatheredPaths total;
     const auto take = [&](uint32_t i, float kernel) {
         const PhotonPayload& p = tree_.payload[i];
-        if (!lights_.empty() && !lights_[p.light]) return;
+        const uint16_t group = groups_.of(i);
+        if (group == PathGroups::kNone) return;
         if (!surface.whole() && surface.hides(tree_.position(i))) return;
         ++out.photons;
-        const Vec3 direction = unpackDirection(p.direction);
-        const Vec3 wi = frame.toLocal(direction);
-        float shading = std::fabs(wi.z / glm::dot(direction, query.point.ng));
-        if (!(shading <= kMaxShadingWeight)) {
-            shading = kMaxShadingWeight;
-            ++scratch.clamped;
-        }
-        const Rgb power = unpackPower(p.power) * (kernel * shading);
-        Rgb fromDiffuse(0), fromGlossy(0);
-        if (diffuse != nullptr) {
-            if (wi.z * wo.z > 0) fromDiffuse = power;  // times albedo / pi, below
-        } else {
-            const BsdfEval f = evalBsdf(bsdf, wo, wi);
-            if (!query.glossyOnly) fromDiffuse = power * f.diffuse.f;
-            if (query.glossyFromAll || (query.glossyFromFlagged && (p.flags & kGlossyGather) != 0))
-                fromGlossy = power * f.glossy.f;
-        }
-        const PathCode code(p.path);
         auto at =
-            std::find_if(out.paths.begin(), out.paths.end(), [&](const GatheredPaths& g) { return g.path == code; });
-        if (at == out.paths.end()) at = out.paths.insert(at, {code});
-        at->diffuse += fromDiffuse;
-        at->glossy += fromGlossy;
+            std::find_if(out.paths.begin(), out.paths.end(), [&](const GatheredPaths& g) { return g.group == group; });
+        if (at == out.paths.end()) at = out.paths.insert(at, {group});
+        GatheredPaths light;
+        if (flat)
+            light.diffuse = unpackPower(p.power) * kernel;
+        else
+            scatterPhoton(p, kernel, {query, bsdf, frame, wo}, light, scratch);
+        at->diffuse += light.diffuse;
+        at->glossy += light.glossy;
+        total.diffuse += light.diffuse;
+        total.glossy += light.glossy;
     };
     const GatheredDisc disc =
         std::visit([&](const auto& index) { return gatherPhotons(index, density, scratch.density, take); }, index_);
@@ -121,7 +186,20 @@ const GatheredLight& PhotonGather::gather(const PhotonGatherQuery& query, const 
         g.diffuse *= scale;
         g.glossy *= perPath;
     }
+    out.total = total.diffuse * scale + total.glossy * perPath;
     return out;
+}
+
+PhotonGather::PhotonGather(const GatherInput& input, const GatherSettings& settings, RunContext& run)
+    : caustic_(input, PhotonClass::Caustic, settings.index, settings.caustic, settings.progressive, run) {
+    if (!settings.indirectFromMap || !input.map.stores(PhotonClass::Indirect)) return;
+    RadiusRule rule = settings.indirect;
+    BandwidthRule& bandwidth = rule.irradiance.bandwidth;
+    // Pass by pass smaller, like the caustics' radius.
+    const float shrunk = square(settings.progressive.scale);
+    bandwidth.leastCount = static_cast<uint32_t>(static_cast<float>(bandwidth.leastCount) * shrunk);
+    bandwidth.mostCount = static_cast<uint32_t>(static_cast<float>(bandwidth.mostCount) * shrunk);
+    indirect_.emplace(input, PhotonClass::Indirect, settings.index, rule, ProgressiveRadius(), run);
 }
 
 }  // namespace lsde

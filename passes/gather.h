@@ -1,13 +1,13 @@
-// Photon estimates at a vertex: the map's caustic class, its index, and the radius rule.
+// Photon estimates at a vertex: the map's classes, their indices and radius rules.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
-#include "photon/density.h"
-#include "photon/index.h"
+#include "path/path_groups.h"
+#include "photon/irradiance_cache.h"
 #include "photon/map_file.h"
-#include "photon/surface_extent.h"
 #include "scene/scene.h"
 
 namespace lsde {
@@ -23,13 +23,14 @@ struct PhotonGatherQuery {
     bool glossyFromFlagged = false;  // the glossy lobe takes flagged photons
 };
 
-// Radiance by the path that the photons took.
+// Radiance by the group of paths that the photons took.
 struct GatheredPaths {
-    PathCode path;
+    uint16_t group = 0;
     Rgb diffuse{0}, glossy{0};  // W/(m2 sr)
 };
 struct GatheredLight {
     std::vector<GatheredPaths> paths;
+    Rgb total{0};  // of all
     uint32_t photons = 0;
 };
 
@@ -37,6 +38,7 @@ struct GatherScratch {
     DensityScratch density;
     DensityScratch pilot;
     SurfaceAround surface;
+    BandwidthScratch bandwidth;
     GatheredLight light;
     uint64_t clamped = 0;  // photons whose |wi.Ns| / |wi.Ng| was bounded
 };
@@ -48,11 +50,20 @@ struct ProgressiveRadius {
     float scale = 1;
 };
 
+// Of one class.
+struct RadiusRule {
+    IrradianceRule irradiance;
+    float reachAtMean = 0;     // photons of the class's mean density that the largest bandwidth holds
+    uint32_t minCount = 0;     // photons that the radius grows to hold where the bandwidth is less
+    float growthAtMean = 0;    // it grows at most to the radius that holds these at the class's mean density
+    float footprintShare = 0;  // least radius over short side of the pixel's footprint
+};
+
 struct GatherSettings {
     IndexKind index = IndexKind::Kd;
-    uint32_t minCount = 20;        // photons that the radius grows to hold
-    uint32_t maxCountAtMean = 80;  // it grows at most to the radius that holds these at the class's mean density
-    float footprintShare = 0.5F;   // radius over short side of the pixel's footprint
+    RadiusRule caustic{{{20, 1000, 2.5F}, 500}, 400, 20, 80, 0.5F};
+    RadiusRule indirect{{{100, 8000, 3}, 50}, 8000, 50, 400, 0};
+    bool indirectFromMap = true;  // where the map holds that class
     ProgressiveRadius progressive;
 };
 
@@ -62,29 +73,51 @@ struct GatherInput {
     const PhotonMap& map;
     std::span<const Segment> creases;
     const std::vector<bool>& lights;  // those that take part, by index as in the map's header
+    const PathFilter& filter;
 };
 
-class PhotonGather {
+// Photons of one class.
+class ClassGather {
   public:
-    PhotonGather(const GatherInput& input, const GatherSettings& settings, RunContext& run);
+    ClassGather(const GatherInput& input, PhotonClass c, IndexKind kind, const RadiusRule& rule,
+                const ProgressiveRadius& progressive, RunContext& run);
+    ClassGather(const ClassGather&) = delete;  // the cache refers to the extent
+    ClassGather& operator=(const ClassGather&) = delete;
 
     const AnyIndex& index() const { return index_; }
+    const PathGroups& groups() const { return groups_; }
     bool empty() const { return tree_.count == 0; }
-
     // Light that the photons bring to wo by each lobe. The result stays valid until the scratch's next use.
     const GatheredLight& gather(const PhotonGatherQuery& query, const Bsdf& bsdf, const Frame& frame, Vec3 wo,
                                 GatherScratch& scratch) const;
 
   private:
     DensityQuery densityQuery(const PhotonGatherQuery& query, GatherScratch& scratch) const;
+    bool known(const PhotonGatherQuery& query, DensityQuery& density, const Bsdf& bsdf, GatherScratch& scratch) const;
 
     PhotonTreeView tree_;
     AnyIndex index_;
-    std::vector<bool> lights_;  // empty: all
-    GatherSettings settings_;
-    float maxRadius_ = 0;  // m
+    RadiusRule rule_;
+    ProgressiveRadius progressive_;
+    PathGroups groups_;
+    float maxRadius_ = 0;  // m, of a growing radius
+    float reach_ = 0;      // m, of the largest bandwidth
     SurfaceExtent extent_;
-    double perPath_ = 0;  // 1 / emitted paths
+    double perPath_ = 0;                      // 1 / emitted paths
+    std::unique_ptr<IrradianceCache> cache_;  // filled while it is used
+};
+
+class PhotonGather {
+  public:
+    PhotonGather(const GatherInput& input, const GatherSettings& settings, RunContext& run);
+
+    const ClassGather& caustic() const { return caustic_; }
+    // Light that met a Diffuse vertex before. Null: the map does not hold the class, or it is not asked for.
+    const ClassGather* indirect() const { return indirect_ ? &*indirect_ : nullptr; }
+
+  private:
+    ClassGather caustic_;
+    std::optional<ClassGather> indirect_;
 };
 
 }  // namespace lsde

@@ -18,20 +18,22 @@ const LayerRequest kBuiltIn[] = {
 
 const char* kReserved[] = {"albedo", "normal", "depth", "unclassified"};
 
-uint64_t statesAfterPhotonWalk(const PathExpr& e) {
-    uint64_t reached = 0, frontier = 1;  // the start
+// States that can be reached from those given by one event or more.
+uint64_t statesAfter(const PathExpr& e, uint64_t from, std::initializer_list<Event> events) {
+    uint64_t reached = 0, frontier = from;
     while (frontier != 0) {
         uint64_t next = 0;
         for (int s = 0; s < e.states(); ++s) {
             if (((frontier >> s) & 1) == 0) continue;
-            next |= uint64_t{1} << e.next(static_cast<uint8_t>(s), Event::Specular);
-            next |= uint64_t{1} << e.next(static_cast<uint8_t>(s), Event::Glossy);
+            for (const Event event : events) next |= uint64_t{1} << e.next(static_cast<uint8_t>(s), event);
         }
         frontier = next & ~reached;
         reached |= next;
     }
     return reached;
 }
+
+constexpr uint64_t kStart = 1;  // after L
 
 }  // namespace
 
@@ -61,16 +63,18 @@ RenderLayers::RenderLayers(const std::vector<LayerRequest>& requests, const std:
     if (only) {
         only_ = static_cast<int>(layers.size());
         layers.push_back({kOnlyLayer, PathExpr(*only)});
-        photonStates_ = statesAfterPhotonWalk(layers.back().expression);
+        const PathExpr& e = layers.back().expression;
+        causticStates_ = statesAfter(e, kStart, {Event::Specular, Event::Glossy});
+        indirectStates_ = statesAfter(e, kStart, {Event::Diffuse, Event::Specular, Event::Glossy});
     }
     filter_ = PathFilter(std::move(layers));
 }
 
-bool RenderLayers::wantsPhotons() const {
+bool RenderLayers::wants(uint64_t photonStates) const {
     if (only_ < 0) return true;
     const PathExpr& e = only();
     for (int s = 0; s < e.states(); ++s) {
-        if (((photonStates_ >> s) & 1) == 0) continue;
+        if (((photonStates >> s) & 1) == 0) continue;
         for (const Event event : {Event::Diffuse, Event::Glossy})
             if (e.alive(e.next(static_cast<uint8_t>(s), event))) return true;
     }
@@ -84,15 +88,28 @@ std::vector<std::string> RenderLayers::filmLayers() const {
     return names;
 }
 
+void SampleSums::addFull(Rgb value) {
+    if (isFinite(value))
+        layer[0] += value;
+    else
+        ++notFinite;
+}
+
 void SampleSums::contribute(const RenderLayers& layers, Rgb value, const LightPathState& light,
                             const EyePathState& eye) {
+    if (!layers.hasOnly()) addFull(value);
+    contributeToLayers(layers, value, light, eye);
+}
+
+void SampleSums::contributeToLayers(const RenderLayers& layers, Rgb value, const LightPathState& light,
+                                    const EyePathState& eye) {
     if (!isFinite(value)) {
-        ++notFinite;
+        notFinite += layers.hasOnly() ? 1 : 0;  // else it has been counted
         return;
     }
     uint32_t accepted = layers.filter().accepted(light, eye);
     if (!layers.counts(accepted)) return;
-    layer[0] += value;
+    if (layers.hasOnly()) layer[0] += value;
     for (size_t i = 1; accepted != 0; ++i, accepted >>= 1)
         if ((accepted & 1) != 0) layer[i] += value;
 }

@@ -41,18 +41,24 @@ class RenderLayers {
     bool hasOnly() const { return only_ >= 0; }
     const PathExpr& only() const { return filter_.layers()[static_cast<size_t>(only_)].expression; }
     bool counts(uint32_t accepted) const { return only_ < 0 || ((accepted >> only_) & 1) != 0; }
-    // Whether a picture of these paths can use photons (L X+ D ...) at all.
-    bool wantsPhotons() const;
-    // Whether photons arriving at a lobe with this eye side can count; light sampled straight there, likewise.
-    bool photonsCount(const EyePathState& eye) const {
-        return only_ < 0 || (eye.mask[static_cast<size_t>(only_)] & photonStates_) != 0;
-    }
+    // Whether a picture of these paths can use photons of the class at all.
+    bool wantsCaustic() const { return wants(causticStates_); }
+    bool wantsIndirect() const { return wants(indirectStates_); }
+    // Whether such photons arriving at a lobe with this eye side can count.
+    bool causticCounts(const EyePathState& eye) const { return counts(causticStates_, eye); }
+    bool indirectCounts(const EyePathState& eye) const { return counts(indirectStates_, eye); }
     bool alive(const EyePathState& eye) const { return counts(filter_.alive(eye)); }
 
   private:
+    bool wants(uint64_t photonStates) const;
+    bool counts(uint64_t photonStates, const EyePathState& eye) const {
+        return only_ < 0 || (eye.mask[static_cast<size_t>(only_)] & photonStates) != 0;
+    }
+
     PathFilter filter_;
     int only_ = -1;
-    uint64_t photonStates_ = 0;  // states of `only` after one or more S or G
+    uint64_t causticStates_ = 0;   // states of `only` after one or more S or G
+    uint64_t indirectStates_ = 0;  // after any event or more
 };
 
 // One sample's light by film layer.
@@ -61,6 +67,10 @@ struct SampleSums {
     uint64_t notFinite = 0;
 
     void contribute(const RenderLayers& layers, Rgb value, const LightPathState& light, const EyePathState& eye);
+    // The same without the full picture, unless `only` decides what that is.
+    void contributeToLayers(const RenderLayers& layers, Rgb value, const LightPathState& light,
+                            const EyePathState& eye);
+    void addFull(Rgb value);
     void addTo(Film& film, int x, int y);  // and clears
 };
 

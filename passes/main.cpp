@@ -122,7 +122,7 @@ void checkOutputs(const std::vector<fs::path>& outputs, const CommonOptions& o) 
 struct EmitOptions {
     fs::path scene, output;
     EmitSettings settings;
-    std::string store = "caustic", shard, lights;
+    std::string store{name(Store::Indirect)}, shard, lights;
     bool noAim = false, resume = false;
 };
 
@@ -175,7 +175,8 @@ std::optional<IndexRange> resumeFrom(const EmitOptions& o, IndexRange wanted, Ru
 
 int runEmit(EmitOptions& o, const CommonOptions& common, RunContext& run) {
     checkOutputs({o.resume ? fs::path() : o.output, common.json}, common);
-    o.settings.storeAll = o.store == "all";
+    for (const Store store : {Store::Caustic, Store::Indirect, Store::All})
+        if (o.store == name(store)) o.settings.store = store;
     o.settings.aim = !o.noAim;
     o.settings.lights = splitNames(o.lights);
     const auto scene = loadScene(o.scene, common, run);
@@ -217,7 +218,7 @@ struct RenderOptions {
     bool noCache = false;
     uint64_t photons = 0, spp = 0;
     double wall = 0, cpu = 0;
-    std::string integrator = "photon", size, crop, index = "kd", only, lights;
+    std::string integrator = "photon", size, crop, index = "kd", indirect = "photons", only, lights;
     std::vector<std::string> paths;
 };
 
@@ -258,6 +259,7 @@ void settle(RenderOptions& o, const CLI::App& app) {
     }
     if (!o.only.empty()) s.only = o.only;
     s.lights = splitNames(o.lights);
+    s.indirectFromMap = o.indirect == "photons";
     s.index = o.index == "flann" ? IndexKind::Flann : IndexKind::Kd;
     int number = 0;
     for (const std::string& p : o.paths) s.paths.push_back(parseLayerRequest(p, ++number));
@@ -280,7 +282,7 @@ int runRender(RenderOptions& o, const CommonOptions& common, const CLI::App& app
     Json j = runFigures(run);
     j["samplesPerPixel"] = r.samples;
     j["photonsEmitted"] = r.photons;
-    j["photonsStored"] = {{"caustic", r.storedPhotons}};
+    j["photonsStored"] = {{"caustic", r.storedPhotons}, {"indirect", r.storedIndirect}};
     if (r.passes > 0) j["progressivePasses"] = r.passes;
     j["notFinite"] = r.notFinite;
     if (!r.cachedMap.empty()) j["cachedMap"] = r.cachedMap.string();
@@ -324,6 +326,11 @@ void addRender(CLI::App& app, RenderOptions& o) {
     app.add_option("--progressive", o.settings.progressive, "independent photon passes with shrinking radius")
         ->check(CLI::PositiveNumber)
         ->type_name("PASSES");
+    app.add_option("--indirect", o.indirect,
+                   "light that met a diffuse surface before: photons (of the map, where it holds them), or paths (no "
+                   "bias, more noise)")
+        ->check(CLI::IsMember({"photons", "paths"}))
+        ->capture_default_str();
     app.add_option("--index", o.index, "photon index: kd or flann")
         ->check(CLI::IsMember({"kd", "flann"}))
         ->capture_default_str();
@@ -383,8 +390,9 @@ int parseAndRun(int argc, char** argv) {
         ->capture_default_str()
         ->type_name("N");
     emitCommand
-        ->add_option("--store", emit.store, "caustic: L X+ D alone; all: also light that met a D, and direct light")
-        ->check(CLI::IsMember({"caustic", "all"}))
+        ->add_option("--store", emit.store,
+                     "caustic: L X+ D alone; indirect: also light that met a D; all: also direct light")
+        ->check(CLI::IsMember({"caustic", "indirect", "all"}))
         ->capture_default_str();
     emitCommand->add_option("--shard", emit.shard, "emit part I of N of the paths (I from 1)")->type_name("I/N");
     emitCommand->add_option("--lights", emit.lights, "only these lights, by name")->type_name("NAME,...");

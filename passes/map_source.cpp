@@ -70,8 +70,8 @@ SourcedMap mapByCount(const Scene& scene, const MapRequest& request, RunContext&
 }
 
 PhotonMap mapByTime(const Scene& scene, const EmitSettings& emit, const Clock& clock, double seconds, RunContext& run) {
-    constexpr double kBuildSeconds = 0.45e-6;  // a photon: tree and layout
-    Emission emission(scene, emit, run.seed);
+    constexpr double kBuildSeconds = 0.5e-6;  // a photon: tree, layout, and what is precomputed at indirect ones
+    Emission emission(scene, emit, run);
     const double start = clock.used();
     uint64_t next = 0;
     {
@@ -82,7 +82,7 @@ PhotonMap mapByTime(const Scene& scene, const EmitSettings& emit, const Clock& c
             next += round;
             const double used = clock.used() - start;
             run.progress("emit", used / seconds);
-            const uint64_t stored = emission.stored(PhotonClass::Caustic);
+            const uint64_t stored = emission.stored(PhotonClass::Caustic) + emission.stored(PhotonClass::Indirect);
             // Where nothing arrives, more of it will not help.
             if (stored == 0 && next >= 4 * kFirstRound) break;
             const double perPath = (used + kBuildSeconds * static_cast<double>(stored)) / static_cast<double>(next);

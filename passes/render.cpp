@@ -16,7 +16,7 @@ namespace lsde {
 namespace {
 
 constexpr uint64_t kDefaultSamples = 64;
-constexpr double kEmissionShare = 0.45;  // of a time limit, where there are caustics
+constexpr double kEmissionShare = 0.33;  // of a time limit, where there are caustics
 constexpr uint32_t kPilotRadiusPhotons = 50;
 
 // What ends the camera pass.
@@ -118,10 +118,13 @@ class Render {
         return 0.02 + 6e-8 * values;
     }
 
+    bool indirectFromMap() const { return settings_.indirectFromMap && layers_.wantsIndirect(); }
+
     EmitSettings emitSettings() const {
         EmitSettings e;
         e.photons = settings_.photons.value_or(kDefaultPhotons);
         e.lights = settings_.lights;
+        e.store = indirectFromMap() ? Store::Indirect : Store::Caustic;
         return e;
     }
 
@@ -137,16 +140,18 @@ class Render {
     void note(const PhotonMap& map) {
         result_.photons += map.header.emittedPaths();
         result_.storedPhotons += map.photons(PhotonClass::Caustic).count;
+        result_.storedIndirect += map.photons(PhotonClass::Indirect).count;
         if (const std::string why = whyNoCaustics(scene_, &map.header.ledger); !why.empty()) noCaustics_ = why;
     }
 
     GatherInput gatherInput(const PhotonMap& map) {
         if (!creases_) creases_ = findCreases(scene_);
-        return {scene_, map, *creases_, selected_};
+        return {scene_, map, *creases_, selected_, layers_.filter()};
     }
     GatherSettings gatherSettings() const {
         GatherSettings g;
         g.index = settings_.index;
+        g.indirectFromMap = indirectFromMap();
         return g;
     }
 
@@ -167,7 +172,7 @@ class Render {
     void onePass() {
         PhotonMap photonMap;
         std::optional<PhotonGather> gather;
-        if (method_.usesPhotons && layers_.wantsPhotons()) {
+        if (method_.usesPhotons && (layers_.wantsCaustic() || layers_.wantsIndirect())) {
             photonMap = map();
             note(photonMap);
             if (!noCaustics_.empty()) run_.warn(noCaustics_);
@@ -227,7 +232,7 @@ void Render::progressivePasses() {
         if (byTime) pathsEach = map.header.emittedPaths();
         if (pass == 0) {
             const PhotonMap& kept = pilotMap.emplace(map);
-            pilotIndex = &pilot.emplace(gatherInput(kept), gatherSettings(), run_).index();
+            pilotIndex = &pilot.emplace(gatherInput(kept), gatherSettings(), run_).caustic().index();
         }
         GatherSettings settings = gatherSettings();
         settings.progressive = {pilotIndex, kPilotRadiusPhotons, progressiveScale(pass)};

@@ -34,7 +34,8 @@ struct RenderSettings {
     std::optional<std::string> only;
     std::vector<std::string> lights;
     IndexKind index = IndexKind::Kd;
-    uint32_t progressive = 0;  // passes; 0: one map, no shrinking radius
+    bool indirectFromMap = true;  // else light that met a diffuse surface before is followed by paths
+    uint32_t progressive = 0;     // passes; 0: one map, no shrinking radius
 };
 
 struct RenderResult {
@@ -45,7 +46,8 @@ struct RenderResult {
     uint32_t passes = 0;         // progressive ones, reached
     uint64_t photons = 0;        // paths emitted for it, or those of the map
     uint64_t storedPhotons = 0;  // of the caustic class
-    uint64_t notFinite = 0;      // contributions left out because they were not finite
+    uint64_t storedIndirect = 0;
+    uint64_t notFinite = 0;  // contributions left out because they were not finite
     std::filesystem::path cachedMap;
     bool interrupted = false;
 };

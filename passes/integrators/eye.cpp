@@ -1,4 +1,6 @@
 // Path tracing and multi-pass photon mapping: one walk from the eye, with and without a map.
+#include <optional>
+
 #include "passes/eye_tracer.h"
 #include "passes/integrators/registry.h"
 
@@ -11,21 +13,36 @@ class EyeIntegrator : public Integrator {
     EyeIntegrator(const IntegratorInput& input, bool photons)
         : lights_(input.scene, input.lights),
           film_(input.camera.filmWidth(), input.camera.filmHeight(), input.layers.filmLayers()),
+          plan_(film_.width(), film_.height()),
+          statistics_(static_cast<size_t>(film_.width()) * static_cast<size_t>(film_.height())),
+          adaptive_(photons),
           tracer_(input.scene, input.camera, lights_, input.layers, photons ? input.photons : nullptr,
                   settings(photons), input.seed) {}
 
     void render(uint64_t begin, uint64_t end, RunContext& run) override {
-        EyeCounters counters;
-        tracer_.render(film_, begin, end, run, counters);
-        run.rays += counters.rays;
-        notFinite_ += counters.notFinite;
+        if (!first_) first_ = begin;
+        const uint64_t uniform = *first_ + SamplePlan::kUniform;
+        if (adaptive_ && begin < uniform && end >= uniform) {
+            sample(begin, uniform, run);
+            plan_.adapt(statistics_);
+            begin = uniform;
+        }
+        if (begin < end) sample(begin, end, run);
     }
     RgbImage develop(int layer, uint64_t samples) const override {
-        return film_.develop(layer, static_cast<double>(samples));
+        std::vector<double> counts(statistics_.size());
+        for (size_t i = 0; i < counts.size(); ++i) counts[i] = static_cast<double>(plan_.count(i, samples));
+        return film_.develop(layer, counts);
     }
     uint64_t notFinite() const override { return notFinite_; }
 
   private:
+    void sample(uint64_t begin, uint64_t end, RunContext& run) {
+        EyeCounters counters;
+        tracer_.render(film_, statistics_, plan_, {*first_, begin - *first_, end - *first_}, run, counters);
+        run.rays += counters.rays;
+        notFinite_ += counters.notFinite;
+    }
     static EyeSettings settings(bool photons) {
         EyeSettings s;
         s.stage = photons ? Stage::Camera : Stage::Reference;
@@ -35,6 +52,10 @@ class EyeIntegrator : public Integrator {
 
     LightSampler lights_;
     Film film_;
+    SamplePlan plan_;
+    std::vector<SampleStatistics> statistics_;
+    bool adaptive_;                  // the path tracer, as ground truth, takes the same number everywhere
+    std::optional<uint64_t> first_;  // number of the first sample
     EyeTracer tracer_;
     uint64_t notFinite_ = 0;
 };

@@ -26,12 +26,19 @@ void Film::add(int x, int y, int layer, Rgb value) {
 }
 
 RgbImage Film::develop(int layer, double samples) const {
+    const std::vector<double> same(static_cast<size_t>(width_) * static_cast<size_t>(height_), samples);
+    return develop(layer, same);
+}
+
+RgbImage Film::develop(int layer, std::span<const double> samples) const {
     RgbImage image(width_, height_);
+    LSDE_ASSERT(samples.size() == image.pixels.size());
     for (int y = 0; y < height_; ++y)
         for (int x = 0; x < width_; ++x) {
             const double* sum = &sums_[index(x, y, layer)];
             Rgb& pixel = image.at(x, y);
-            for (int c = 0; c < 3; ++c) pixel[c] = static_cast<float>(sum[c] / samples);
+            const double count = samples[static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x)];
+            for (int c = 0; c < 3; ++c) pixel[c] = static_cast<float>(sum[c] / count);
             if (!isFinite(pixel))
                 throw Error(fmt::format("layer \"{}\": pixel ({}, {}) is ({}, {}, {}), expected finite values",
                                         layerName(layer), x, y, pixel.x, pixel.y, pixel.z));

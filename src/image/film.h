@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,7 @@ class Film {
     // Divides by the number of samples each pixel has had. Throws Error naming layer and pixel if the mean is not
     // finite.
     RgbImage develop(int layer, double samples) const;
+    RgbImage develop(int layer, std::span<const double> samples) const;  // of each pixel, row by row
     // Adds the other film's sums times a factor (progressive passes).
     void accumulate(const Film& other, double factor);
 

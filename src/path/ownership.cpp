@@ -2,7 +2,24 @@
 
 namespace lsde {
 
-Ownership ownerOf(std::span<const VertexClass> classes, bool deltaLight) {
+namespace {
+
+// The vertex, counted without straight passages, at which the map takes over from the eye; -1: nowhere.
+int vertexTakingOver(std::span<const VertexClass> classes, std::span<const uint8_t> takesOver) {
+    int vertex = 0, taking = -1;
+    bool metDiffuse = false;
+    for (size_t i = 0; i < takesOver.size(); ++i) {
+        if (takesOver[i] != 0) taking = metDiffuse ? vertex : -1;
+        metDiffuse |= classes[i] == VertexClass::Diffuse;
+        vertex += classes[i] == VertexClass::Straight ? 0 : 1;
+    }
+    return taking;
+}
+
+}  // namespace
+
+Ownership ownerOf(std::span<const VertexClass> classes, bool deltaLight, std::span<const uint8_t> takesOver) {
+    if (const int taking = vertexTakingOver(classes, takesOver); taking >= 0) return {Owner::Photons, taking};
     int vertex = 0, firstGlossy = -1;
     for (const VertexClass c : classes) {
         if (c == VertexClass::Straight) continue;
@@ -21,8 +38,9 @@ void LightWalkClass::pass(VertexClass c) {
     glossies_ += c == VertexClass::Glossy ? 1 : 0;
 }
 
-void EyeWalkClass::pass(VertexClass c) {
+void EyeWalkClass::pass(VertexClass c, bool takesOver) {
     if (c == VertexClass::Straight) return;
+    onlyEmitters_ |= takesOver;
     metDiffuse_ |= c == VertexClass::Diffuse;
     last_ = c;
 }

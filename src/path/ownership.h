@@ -6,6 +6,8 @@
 //   V1..V(j-1) in X, Vj the first Diffuse            the photon estimate at Vj
 //   V1 Bend, some Glossy, no Diffuse                 the camera path hits the emitter; under a delta light the Glossy
 //                                                    vertex nearest to the light gathers photons
+// Where the map also holds light that met a Diffuse vertex (class indirect), it owns that light at diffuse lobes: of
+// those, the vertex nearest to the eye gathers what met any Diffuse before it, and the eye's path ends there.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +29,8 @@ struct Ownership {
 
 // From the whole path, light first. The specification that the walks below are tested against. A delta light is never
 // hit: the paths from one that only bend, or meet nothing, carry no light.
-Ownership ownerOf(std::span<const VertexClass> classes, bool deltaLight);
+// takesOver[i] != 0: the event at vertex i is a diffuse lobe's, and the map holds indirect light there. Empty: nowhere.
+Ownership ownerOf(std::span<const VertexClass> classes, bool deltaLight, std::span<const uint8_t> takesOver = {});
 
 // The light side, event by event: what may be stored where the walk arrives.
 class LightWalkClass {
@@ -49,7 +52,10 @@ class LightWalkClass {
 // The eye side, event by event: which estimates are made where the walk arrives.
 class EyeWalkClass {
   public:
-    void pass(VertexClass c);
+    // takesOver: the map owns what the lobe passed gets from light that met a Diffuse vertex.
+    void pass(VertexClass c, bool takesOver = false);
+    // Nothing but an emitter that is reached straight counts any more: direct light of the vertex passed, by MIS.
+    bool onlyEmitters() const { return onlyEmitters_; }
     // Whether light is sampled at a lobe of this class at the vertex reached.
     bool samplesLight(VertexClass lobe) const {
         return lobe == VertexClass::Diffuse || (lobe == VertexClass::Glossy && !metDiffuse_);
@@ -65,6 +71,7 @@ class EyeWalkClass {
 
   private:
     bool metDiffuse_ = false;
+    bool onlyEmitters_ = false;
     VertexClass last_ = VertexClass::Straight;  // Straight: none yet
 };
 

@@ -34,7 +34,16 @@ struct DensityScratch {
     NeighbourList found;
     ScratchList<Candidate> accepted;  // in the order found
     ScratchList<float> entries;
+
+    // The last query's disc, for the guess of the next one's: neighbouring pixels query neighbouring points, which need
+    // about the same radius. A matter of speed alone: whatever radius a search starts with, the disc found is the same.
+    Vec3 lastPosition{0};
+    float lastRadius = 0;  // m; 0: none yet
+    size_t lastFound = 0;  // photons that its search went through
 };
+
+// A radius for the first search that holds, if all is well, query.minCount photons and few more.
+float firstRadius(const PhotonTreeView& tree, const DensityQuery& query, const DensityScratch& scratch);
 
 // scratch.found -> scratch.accepted: the photons that count at the query's point in a disc of the given radius (m).
 //
@@ -62,8 +71,7 @@ template <PhotonIndex Index, typename Take>
 GatheredDisc gatherPhotons(const Index& index, const DensityQuery& query, DensityScratch& scratch, Take&& take) {
     const float least = query.minRadius, most = std::max(query.minRadius, query.maxRadius);
     float radius = least;
-    if (query.minCount > 0 && least < most)
-        radius = std::clamp(guessRadius(index.tree(), query.point.position, query.minCount), least, most);
+    if (query.minCount > 0 && least < most) radius = std::clamp(firstRadius(index.tree(), query, scratch), least, most);
     for (;;) {
         index.within(query.point.position, radius, scratch.found);
         acceptPhotons(index.tree(), query, radius, scratch);
@@ -75,6 +83,9 @@ GatheredDisc gatherPhotons(const Index& index, const DensityQuery& query, Densit
         radiusSquared = std::max(least * least, radiusSquaredHolding(query.minCount, radius, scratch));
         radius = std::sqrt(radiusSquared);
     }
+    scratch.lastPosition = query.point.position;
+    scratch.lastRadius = radius;
+    scratch.lastFound = scratch.found.size();
     GatheredDisc disc{radius, 0};
     for (const DensityScratch::Candidate& c : scratch.accepted) {
         if (!(c.entrySquared < radiusSquared)) continue;

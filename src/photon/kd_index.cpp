@@ -94,6 +94,16 @@ float KdIndex::reachOfAll(Vec3 centre) const {
     return std::max(1.0001F * glm::length(farthest), kLeastRadius);  // above all roundings
 }
 
+uint32_t nearestBlock(const PhotonTreeView& tree, Vec3 p) {
+    const KdShape shape(tree.count);
+    const lanes::Sphere8 point(p.x, p.y, p.z, 0);
+    uint32_t node = 0;
+    for (auto level = static_cast<size_t>(shape.levels); level-- > 0;)
+        node =
+            kNodeWidth * node + lanes::leastLane(lanes::distanceToBoxes(tree.nodes[shape.first[level] + node], point));
+    return node;
+}
+
 float guessRadius(const PhotonTreeView& tree, Vec3 centre, uint32_t count) {
     const KdShape shape(tree.count);
     if (shape.levels == 0 || !isFinite(centre)) return 1;

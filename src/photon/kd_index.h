@@ -79,6 +79,8 @@ KdNode nodeOver(std::span<const PhotonBlock> blocks);
 KdNode nodeOver(std::span<const KdNode> children);
 Bounds boundsOf(const KdNode& node);
 
+// The block whose box is nearest to p, or nearly (found greedily). The tree is not empty.
+uint32_t nearestBlock(const PhotonTreeView& tree, Vec3 p);
 // A positive radius that holds perhaps somewhat more than `count` photons, by the density of the nearest block.
 float guessRadius(const PhotonTreeView& tree, Vec3 centre, uint32_t count);
 // The next radius to try where `found` of `wanted` photons were in this one.

@@ -29,6 +29,14 @@ void Ledger::merge(const Ledger& other) {
     maxAimWeight = std::max(maxAimWeight, other.maxAimWeight);
 }
 
+double Ledger::fluxOf(size_t photonClass) const {
+    const size_t objects = flux.size() / 3;
+    double sum = 0;
+    for (size_t i = photonClass * objects; i < (photonClass + 1) * objects; ++i)
+        for (int c = 0; c < 3; ++c) sum += flux[i].toDouble(c);
+    return sum;
+}
+
 FixedRgb Ledger::balance() const {
     FixedRgb rest = (*this)[LedgerColumn::Emitted];
     for (size_t i = 1; i < columns.size(); ++i) rest -= columns[i];

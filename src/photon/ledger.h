@@ -41,7 +41,8 @@ struct Ledger {
     Ledger(size_t lights, size_t objects);
     FixedRgb& operator[](LedgerColumn c) { return columns[static_cast<size_t>(c)]; }
     const FixedRgb& operator[](LedgerColumn c) const { return columns[static_cast<size_t>(c)]; }
-    void merge(const Ledger& other);  // sums; sizes must agree
+    void merge(const Ledger& other);          // sums; sizes must agree
+    double fluxOf(size_t photonClass) const;  // of all objects and channels
     // Emitted minus all other columns: zero, or the ledger is broken.
     FixedRgb balance() const;
 };

@@ -17,7 +17,6 @@ constexpr ContainerKind kKind{"photons", kMapVersion};
 constexpr size_t kGrain = 1024;  // blocks or nodes a task
 
 // Known to this version; a record with others was not made by it.
-constexpr uint16_t kAllFlags = kFromDeltaLight | kGlossyGather;
 
 struct SectionNames {
     explicit SectionNames(PhotonClass c)
@@ -93,8 +92,8 @@ class ClassChecker {
         };
         if (p.light >= lights_) return problem(fmt::format("light {}, expected one of {}", p.light, lights_));
         if (!PathCode(p.path).valid()) return problem(fmt::format("path {:016x}, expected events of a path", p.path));
-        if ((p.flags & ~kAllFlags) != 0)
-            return problem(fmt::format("flags {:x}, expected none but {:x}", p.flags, kAllFlags));
+        if ((p.flags & ~kAllPhotonFlags) != 0)
+            return problem(fmt::format("flags {:x}, expected none but {:x}", p.flags, kAllPhotonFlags));
         return {};
     }
 

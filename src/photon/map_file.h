@@ -15,7 +15,7 @@
 namespace lsde {
 
 // Of the file's format: sections, records and header.
-inline constexpr uint32_t kMapVersion = 1;
+inline constexpr uint32_t kMapVersion = 2;
 
 enum class PhotonClass : uint8_t { Caustic = 0, Indirect = 1, Direct = 2 };
 inline constexpr int kPhotonClasses = 3;
@@ -33,7 +33,7 @@ struct MapHeader {
     uint64_t seed = 0;
     uint64_t totalPaths = 0;  // of the whole emission, over all shards
     uint32_t maxDepth = 0;
-    std::string store;  // "caustic" or "all"
+    std::string store;  // "caustic", "indirect" (and caustic) or "all"
     bool aimed = true;
     std::vector<std::string> lights;   // names, index = Photon::light
     std::vector<std::string> objects;  // names, index = ledger's object

@@ -18,7 +18,8 @@ constexpr const char* kRecord =
     "CLASS.blocks: 16 photons, f32 x[16] y[16] z[16], absent 1e30; CLASS.payload: u64 events, 2 bits each from the "
     "lowest (0 D, 1 G, 2 S), their number in bits 58-62, bit 63: there were more; u32 power, mantissas R G B of 8 bits "
     "from the lowest in units of 2^(e - 136) W, e in the upper 8 bits; u32 direction to the light, octahedral 16 + 16; "
-    "u16 normal, octahedral 8 + 8; u16 light; u16 medium; u16 flags (1: delta light, 2: counts at glossy surfaces)";
+    "u16 normal, octahedral 8 + 8; u16 light; u16 medium; u16 flags (1: delta light, 2: counts at glossy surfaces, "
+    "4: landed on the normal's side)";
 
 // ------------------------------------------------------------------------------------------------------------- writing
 
@@ -190,7 +191,8 @@ MapDescription fromJson(std::string_view text) {
     if (maxDepth > std::numeric_limits<uint32_t>::max()) fail("maxDepth", maxDepth, "less than 2^32");
     h.maxDepth = static_cast<uint32_t>(maxDepth);
     h.store = stringOf(at(json, "store"), "store");
-    if (h.store != "caustic" && h.store != "all") fail("store", h.store, "\"caustic\" or \"all\"");
+    if (h.store != "caustic" && h.store != "indirect" && h.store != "all")
+        fail("store", h.store, "\"caustic\", \"indirect\" or \"all\"");
     if (!at(json, "aimed").is_boolean()) fail("aimed", at(json, "aimed"), "true or false");
     h.aimed = at(json, "aimed").get<bool>();
     h.lights = stringsOf(json, "lights");

@@ -38,7 +38,8 @@ PackedPhoton pack(const Photon& photon) {
     packed.payload.normal = packNormal(photon.ng);
     packed.payload.light = photon.light;
     packed.payload.medium = photon.medium;
-    packed.payload.flags = photon.flags;
+    const bool front = glm::dot(photon.direction, photon.ng) > 0;
+    packed.payload.flags = static_cast<uint16_t>((photon.flags & ~kLandedOnFront) | (front ? kLandedOnFront : 0));
     return packed;
 }
 

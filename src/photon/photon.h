@@ -26,7 +26,9 @@ struct Photon {
 enum PhotonFlag : uint16_t {
     kFromDeltaLight = 1,  // point, spot or directional: a Glossy vertex may gather it (path/ownership.h)
     kGlossyGather = 2,    // L B+ only: causticAtGlossy
+    kLandedOnFront = 4,   // direction is on the side of the normal; set by pack()
 };
+inline constexpr uint16_t kAllPhotonFlags = kFromDeltaLight | kGlossyGather | kLandedOnFront;
 
 // Everything but the position: 24 bytes.
 struct PhotonPayload {

@@ -2,8 +2,17 @@
 
 #include "base/error.h"
 #include "sampling/mis.h"
+#include "transport/cone.h"
 
 namespace lsde {
+
+namespace {
+
+constexpr size_t kMostEmitters = 8;
+// Of a hemisphere, by the cosine: where emitters may take this share, each walk looks for them.
+constexpr float kNearEmitters = 0.125F;
+
+}  // namespace
 
 LightSampler::LightSampler(const Scene& scene, const std::vector<bool>& selected) {
     std::vector<double> weights(scene.lights().size());
@@ -22,6 +31,18 @@ LightSampler::LightSampler(const Scene& scene, const std::vector<bool>& selected
             weights[i] = 0.2 / static_cast<double>(count) +
                          (total > 0 ? 0.8 * weights[i] / total : 0.8 / static_cast<double>(count));
     choice_ = DiscreteDistribution(weights);
+    std::vector<Sphere> emitters;
+    for (size_t i = 0; i < weights.size(); ++i)
+        if (const auto* area = std::get_if<AreaLight>(&scene.lights()[i].shape); area != nullptr && selected[i])
+            emitters.push_back({area->bounds.centre(), area->bounds.radius()});
+    if (!emitters.empty()) emitters_ = groupCasters(std::move(emitters), kMostEmitters);
+}
+
+float LightSampler::bsdfSamples(const Vertex& vertex) const {
+    const Vec3 normal = vertex.wo.z < 0 ? -vertex.surface.ns : vertex.surface.ns;
+    float share = 0;
+    for (const Caster& e : emitters_) share += cosineShare(coneTo(e.bounds, vertex.surface.position), normal);
+    return std::min(1.0F, share / kNearEmitters);
 }
 
 DirectLight sampleDirectLight(const Scene& scene, const LightSampler& lights, const Vertex& vertex,
@@ -44,9 +65,9 @@ DirectLight sampleDirectLight(const Scene& scene, const LightSampler& lights, co
     out.straightPassages = v.straightPassages;
     const float pdf = sample.pdfW * lights.probability(index);
     const Rgb arriving = sample.radiance * v.transmittance * (std::fabs(wi.z) / pdf);
-    const bool mis = query.mis && !light.isDelta();
-    if (diffuse) out.diffuse = arriving * f.diffuse.f * (mis ? powerHeuristic(pdf, f.diffuse.pdfW) : 1.0F);
-    if (glossy) out.glossy = arriving * f.glossy.f * (mis ? powerHeuristic(pdf, f.glossy.pdfW) : 1.0F);
+    const float others = light.isDelta() ? 0 : query.bsdfSamples;
+    if (diffuse) out.diffuse = arriving * f.diffuse.f * powerHeuristic(pdf, others * f.diffuse.pdfW);
+    if (glossy) out.glossy = arriving * f.glossy.f * powerHeuristic(pdf, others * f.glossy.pdfW);
     return out;
 }
 

@@ -5,6 +5,7 @@
 
 #include "sampling/distribution.h"
 #include "sampling/sampler.h"
+#include "scene/casters.h"
 #include "transport/walk.h"
 
 namespace lsde {
@@ -18,9 +19,13 @@ class LightSampler {
     size_t choose(float& u) const { return choice_.sample(u); }
     float probability(size_t light) const { return choice_.pmf(light); }
     bool selected(size_t light) const { return choice_.pmf(light) > 0; }
+    // For walks that end at a Lambertian vertex: the probability with which to look for emitters in a sampled direction
+    // all the same. 1 where they may be near and light sampling alone is noisy; 0 where there are none.
+    float bsdfSamples(const Vertex& vertex) const;
 
   private:
-    DiscreteDistribution choice_;  // by power, with a floor for each: no light is starved
+    std::vector<Caster> emitters_;  // spheres that hold the lights with an area
+    DiscreteDistribution choice_;   // by power, with a floor for each: no light is starved
 };
 
 // One sampled light at a vertex: radiance towards wo by each lobe, MIS-weighted where the BSDF may hit the light too.
@@ -31,7 +36,9 @@ struct DirectLight {
 
 struct DirectLightQuery {
     bool diffuse = true, glossy = true;  // lobes that sample light (path/ownership.h)
-    bool mis = true;  // the walk goes on from here by BSDF sampling and counts hits with their weight
+    // How many directions the walk goes on from here by BSDF sampling, counting hits with their weight: 1, or the
+    // probability that it does so at all.
+    float bsdfSamples = 1;
 };
 
 DirectLight sampleDirectLight(const Scene& scene, const LightSampler& lights, const Vertex& vertex,

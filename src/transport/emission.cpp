@@ -5,31 +5,11 @@
 
 #include "base/error.h"
 #include "sampling/warp.h"
+#include "transport/cone.h"
 
 namespace lsde {
 
 namespace {
-
-// The cone in which a sphere is seen from p; covers everything if p is inside.
-struct Cone {
-    Vec3 axis{0, 0, 1};
-    float oneMinusCos = 2;
-    bool everything = true;
-};
-
-Cone coneTo(const Sphere& s, Vec3 p) {
-    const Vec3 d = s.centre - p;
-    const float d2 = lengthSquared(d), r2 = square(s.radius);
-    if (d2 <= r2 * 1.0002F) return {};
-    const float sin2 = r2 / d2;
-    // 1 - cos without cancellation for narrow cones.
-    return {d / std::sqrt(d2), sin2 / (1 + std::sqrt(1 - sin2)), false};
-}
-
-bool within(const Cone& cone, Vec3 direction) {
-    // |direction - axis|^2 / 2 = 1 - cos, exact for narrow cones as well.
-    return cone.everything || 0.5F * lengthSquared(direction - cone.axis) <= cone.oneMinusCos;
-}
 
 Vec2 discOffset(const Sphere& s, Vec3 position, const Frame& frame) {
     const Vec3 d = position - s.centre;
@@ -53,10 +33,7 @@ double usefulness(const Light& light, const Sphere& caster) {
     for (int i = 0; i < kPoints; ++i) {
         const Vec2 u((static_cast<float>(i) + 0.5F) / kPoints, std::fmod(static_cast<float>(i) * 0.61803399F, 1.0F));
         const EmissionPoint e = area.samplePoint(u, i % 2 == 0 ? 0.25F : 0.75F);
-        const Cone cone = coneTo(caster, e.position);
-        const float sine = cone.everything ? 1 : safeSqrt(cone.oneMinusCos * (2 - cone.oneMinusCos));
-        const float cosine = cone.everything ? 1 : glm::dot(e.normal, cone.axis);
-        sum += cone.oneMinusCos * std::clamp(cosine + sine, 0.0F, 1.0F);
+        sum += cosineShare(coneTo(caster, e.position), e.normal);
     }
     return sum / kPoints;
 }
@@ -90,6 +67,7 @@ EmissionSampler::EmissionSampler(const Scene& scene, const std::vector<bool>& se
         aims_.push_back(selected[i] ? aimOf(scene.lights()[i], solids) : Aim{});
         if (!selected[i]) continue;
         totalPower_ += scene.lights()[i].power();
+        fairPower_ += maxComponent(scene.lights()[i].power()) / aims_.back().parts.pmf(0);
         weights[i] = luminance(scene.lights()[i].power());
         total += weights[i];
         ++count;

@@ -12,8 +12,10 @@
 
 namespace lsde {
 
-// Share of a light's paths that is not aimed: where photons are wanted that bent, and where all that is lit is.
+// Share of a light's paths that is not aimed: where only photons are wanted that bent, where also those are that go on
+// from a diffuse surface, and where all that is lit is seen.
 inline constexpr float kWholeEmissionShare = 0.2F;
+inline constexpr float kWholeEmissionShareGoingOn = 0.25F;
 inline constexpr float kWholeEmissionShareSeen = 0.8F;
 
 struct LightPathStart {
@@ -36,6 +38,8 @@ class EmissionSampler {
     bool sample(Sampler& sampler, LightPathStart& start) const;
 
     Rgb totalPower() const { return totalPower_; }  // W, of the lights that take part
+    // W: largest component of an unaimed path's power, on average over the lights.
+    float fairPower() const { return fairPower_; }
     // Density of a direction (1/sr; directional: of a point on the disc's plane, 1/m2) from `position` on light i by
     // the whole emission and by the mixture; for tests.
     struct Densities {
@@ -68,6 +72,7 @@ class EmissionSampler {
     std::vector<Aim> aims_;
     float wholeShare_;  // 1: not aimed
     Rgb totalPower_{0};
+    float fairPower_ = 0;
 };
 
 }  // namespace lsde

@@ -12,7 +12,7 @@ PhotonMap emit(const std::string& scene, uint64_t photons, bool aim = true, bool
     EmitSettings s;
     s.photons = photons;
     s.aim = aim;
-    s.storeAll = all;
+    s.store = all ? Store::All : Store::Caustic;
     RunContext run(0, 1);
     return emitPhotons(sceneOf(scene), s, run);
 }

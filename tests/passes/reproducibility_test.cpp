@@ -36,7 +36,7 @@ std::string bytesOf(const std::filesystem::path& file) {
 void emitTo(const std::filesystem::path& file, const std::string& scene, IndexRange range, int threads) {
     EmitSettings s;
     s.photons = 40000;
-    s.storeAll = true;
+    s.store = Store::All;
     s.range = range;
     RunContext run(threads, 3);
     writePhotonMap(file, emitPhotons(sceneOf(scene), s, run), run);

@@ -14,6 +14,12 @@ namespace {
 
 using Classes = std::vector<VertexClass>;
 
+// A path's vertices, and at which of them the map takes over light that met a Diffuse vertex.
+struct Path {
+    Classes classes;
+    std::vector<uint8_t> takesOver;
+};
+
 // MIS weights of light sampling and of BSDF sampling for the same path: any two that add up to one.
 constexpr double kSampledLight = 0.25;
 constexpr double kSampledBsdf = 1 - kSampledLight;
@@ -29,9 +35,9 @@ Classes classesOf(std::string_view letters) {
 }
 
 // The eye's walk up to vertex j: all events beyond it.
-EyeWalkClass eyeWalkTo(const Classes& path, size_t j) {
+EyeWalkClass eyeWalkTo(const Path& path, size_t j) {
     EyeWalkClass walk;
-    for (size_t i = path.size(); i-- > j + 1;) walk.pass(path[i]);
+    for (size_t i = path.classes.size(); i-- > j + 1;) walk.pass(path.classes[i], path.takesOver[i] != 0);
     return walk;
 }
 
@@ -48,25 +54,32 @@ bool onlyStraight(const Classes& path, size_t end) {
 }
 
 // Photons that the light's walk leaves at vertex j, gathered there by the eye's walk.
-bool gathered(const Classes& path, size_t j, bool deltaLight) {
-    const LightWalkClass light = lightWalkTo(path, j);
-    const bool stored = path[j] == VertexClass::Diffuse  ? light.causticAtDiffuse()
-                        : path[j] == VertexClass::Glossy ? light.causticAtGlossy(deltaLight)
-                                                         : false;
-    return stored && eyeWalkTo(path, j).gathers(path[j]);
+bool gathered(const Path& path, size_t j, bool deltaLight) {
+    const LightWalkClass light = lightWalkTo(path.classes, j);
+    const VertexClass c = path.classes[j];
+    const bool stored = c == VertexClass::Diffuse  ? light.causticAtDiffuse()
+                        : c == VertexClass::Glossy ? light.causticAtGlossy(deltaLight)
+                                                   : false;
+    const bool indirect = path.takesOver[j] != 0 && light.metDiffuse();
+    const EyeWalkClass eye = eyeWalkTo(path, j);
+    return (stored || indirect) && !eye.onlyEmitters() && eye.gathers(c);
 }
 
 // A shadow ray from vertex j, through straight passages only.
-bool lightSampled(const Classes& path, size_t j) {
-    const bool scatters = path[j] == VertexClass::Diffuse || path[j] == VertexClass::Glossy;
-    return scatters && onlyStraight(path, j) && eyeWalkTo(path, j).samplesLight(path[j]);
+bool lightSampled(const Path& path, size_t j) {
+    const bool scatters = path.classes[j] == VertexClass::Diffuse || path.classes[j] == VertexClass::Glossy;
+    const EyeWalkClass eye = eyeWalkTo(path, j);
+    return scatters && onlyStraight(path.classes, j) && !eye.onlyEmitters() && eye.samplesLight(path.classes[j]);
 }
 
 // The eye's walk arriving at the emitter itself.
-double emitterHit(const Classes& path, bool deltaLight) {
+double emitterHit(const Path& path, bool deltaLight) {
     if (deltaLight) return 0;
     EyeWalkClass walk;
-    for (size_t i = path.size(); i-- > 0;) walk.pass(path[i]);
+    for (size_t i = path.classes.size(); i-- > 0;) {
+        if (walk.onlyEmitters() && path.classes[i] != VertexClass::Straight) return 0;
+        walk.pass(path.classes[i], path.takesOver[i] != 0);
+    }
     switch (walk.emitterHit()) {
         case EyeWalkClass::EmitterHit::Full:
             return 1;
@@ -84,11 +97,11 @@ struct Counted {
     int vertex = -1;
 };
 
-Counted count(const Classes& path, bool deltaLight) {
+Counted count(const Path& path, bool deltaLight) {
     Counted n;
     int vertex = 0;
-    for (size_t j = 0; j < path.size(); ++j) {
-        if (path[j] == VertexClass::Straight) continue;
+    for (size_t j = 0; j < path.classes.size(); ++j) {
+        if (path.classes[j] == VertexClass::Straight) continue;
         if (gathered(path, j, deltaLight)) {
             n.photons += 1;
             n.vertex = vertex;
@@ -104,6 +117,24 @@ Counted count(const Classes& path, bool deltaLight) {
     return n;
 }
 
+void checkCountedOnce(const Path& path) {
+    for (const bool deltaLight : {false, true}) {
+        std::string letters;
+        for (const VertexClass c : path.classes) letters += "DGBT"[static_cast<size_t>(c)];
+        for (size_t i = 0; i < letters.size(); ++i)
+            if (path.takesOver[i] != 0) letters[i] = 'd';
+        CAPTURE(letters);
+        CAPTURE(deltaLight);
+        const Ownership owner = ownerOf(path.classes, deltaLight, path.takesOver);
+        const Counted n = count(path, deltaLight);
+        REQUIRE(n.photons == (owner.owner == Owner::Photons ? 1 : 0));
+        REQUIRE(n.direct == (owner.owner == Owner::DirectLight ? 1 : 0));
+        // A delta light has no picture of its own.
+        REQUIRE(n.cameraHit == (owner.owner == Owner::CameraHit && !deltaLight ? 1 : 0));
+        REQUIRE(n.vertex == owner.vertex);
+    }
+}
+
 }  // namespace
 
 TEST_CASE("every path is counted exactly once, by its owner") {
@@ -111,19 +142,20 @@ TEST_CASE("every path is counted exactly once, by its owner") {
     const std::array all{VertexClass::Diffuse, VertexClass::Glossy, VertexClass::Bend, VertexClass::Straight};
     const std::vector<Classes> paths = allSequences<Classes>(all, 7);
     REQUIRE(paths.size() == 21845);
-    for (const Classes& path : paths)
-        for (const bool deltaLight : {false, true}) {
-            std::string letters;
-            for (const VertexClass c : path) letters += "DGBT"[static_cast<size_t>(c)];
-            CAPTURE(letters);
-            CAPTURE(deltaLight);
-            const Ownership owner = ownerOf(path, deltaLight);
-            const Counted n = count(path, deltaLight);
-            REQUIRE(n.photons == (owner.owner == Owner::Photons ? 1 : 0));
-            REQUIRE(n.direct == (owner.owner == Owner::DirectLight ? 1 : 0));
-            // A delta light has no picture of its own.
-            REQUIRE(n.cameraHit == (owner.owner == Owner::CameraHit && !deltaLight ? 1 : 0));
-            REQUIRE(n.vertex == owner.vertex);
+    for (const Classes& path : paths) checkCountedOnce({path, std::vector<uint8_t>(path.size())});
+}
+
+TEST_CASE("every path is counted exactly once where the map takes over at some of its diffuse vertices") {
+    const std::array all{VertexClass::Diffuse, VertexClass::Glossy, VertexClass::Bend, VertexClass::Straight};
+    for (const Classes& path : allSequences<Classes>(all, 6))
+        for (uint32_t chosen = 1; chosen < (1U << path.size()); ++chosen) {
+            Path p{path, {}};
+            bool diffuse = true;
+            for (size_t i = 0; i < path.size(); ++i) {
+                p.takesOver.push_back(static_cast<uint8_t>(chosen >> i & 1));
+                diffuse &= p.takesOver[i] == 0 || path[i] == VertexClass::Diffuse;
+            }
+            if (diffuse) checkCountedOnce(p);
         }
 }
 

@@ -1,0 +1,248 @@
+#include "passes/light_tracer.h"
+
+#include "base/hash.h"
+#include "path/ownership.h"
+
+namespace lsde {
+
+namespace {
+
+// Follows single light paths and keeps their books: at every step what the path loses is entered in one column, so that
+// the columns add up to what was emitted, exactly.
+class LightTracer {
+  public:
+    LightTracer(const LightTracerInput& input, LightPaths& out) : in_(input), out_(out) {}
+
+    void trace(uint64_t index) {
+        Sampler sampler = Sampler::sequence(in_.seed, in_.stage, index);
+        const Rgb total = in_.sources.totalPower();
+        enter(LedgerColumn::Emitted, total);
+        LightPathStart start;
+        if (!in_.sources.sample(sampler, start)) {
+            enter(LedgerColumn::Sampling, total);
+            return;
+        }
+        move(LedgerColumn::Sampling, total, start.power);
+        out_.ledger.emittedByLight[start.light] += FixedRgb(start.power);
+        ++out_.ledger.pathsByLight[start.light];
+        out_.ledger.maxAimWeight = std::max(out_.ledger.maxAimWeight, static_cast<double>(start.aimWeight));
+        light_ = start.light;
+        delta_ = in_.scene.lights()[light_].isDelta();
+        index_ = index;
+        stored_ = 0;
+        waiting_.clear();
+        waiting_.push_back({sampler, {start.ray, start.media, start.power}});
+        while (!waiting_.empty()) {
+            LightPath path = waiting_.back();
+            waiting_.pop_back();
+            follow(path);
+        }
+    }
+    uint64_t rays() const { return scratch_.rays; }
+
+  private:
+    struct LightPath {
+        Sampler sampler;
+        PathState state;
+        LightWalkClass walk;
+        PathCode code;
+        uint32_t depth = 0;
+        float aimWeight = 1;  // product of the weights of directions aimed since the light met a D
+    };
+
+    void enter(LedgerColumn column, Rgb power) { out_.ledger[column] += FixedRgb(power); }
+    // Power went from `before` to `after`: the difference belongs to the column.
+    void move(LedgerColumn column, Rgb before, Rgb after) {
+        if (before == after) return;
+        out_.ledger[column] += FixedRgb(before) - FixedRgb(after);
+    }
+
+    void follow(LightPath& path) {
+        for (;; ++path.depth) {
+            const Rgb before = path.state.throughput;
+            const uint64_t raysBefore = scratch_.rays;
+            Vertex v;
+            const bool arrives = advance(in_.scene, path.state, v, scratch_);
+            if (path.walk.metDiffuse()) out_.raysAfterDiffuse += scratch_.rays - raysBefore;
+            if (!arrives) {
+                // What a medium takes from light that never arrives anywhere is not told apart from what escapes.
+                enter(LedgerColumn::Escaped, before);
+                return;
+            }
+            move(LedgerColumn::AbsorbedVolume, before, path.state.throughput);
+            land(v, path);
+            if (path.depth >= in_.maxDepth) {
+                enter(LedgerColumn::DepthCut, path.state.throughput);
+                return;
+            }
+            const auto* lambert = std::get_if<DiffuseBsdf>(&v.bsdf);
+            if (lambert != nullptr && in_.store != Store::Caustic) {
+                scatterFairly(v, *lambert, path);
+                return;
+            }
+            if (!bounce(v, path)) return;
+        }
+    }
+
+    void land(const Vertex& v, const LightPath& path) {
+        const bool glossy = hasGlossyLobe(v.bsdf);
+        const bool wide = hasDiffuseLobe(v.bsdf) || (glossy && glossyClass(v.bsdf) == VertexClass::Diffuse);
+        const bool forGlossy = glossy && path.walk.causticAtGlossy(delta_);
+        if (!wide && !forGlossy) return;
+        const PhotonClass c = path.walk.metDiffuse() ? PhotonClass::Indirect
+                              : path.walk.metAny()   ? PhotonClass::Caustic
+                                                     : PhotonClass::Direct;
+        const MeshInfo& info = in_.scene.meshes()[v.surface.mesh];
+        ++out_.ledger.landed[static_cast<size_t>(c)];
+        out_.ledger.flux[static_cast<size_t>(c) * in_.scene.objects().size() + info.object] +=
+            FixedRgb(path.state.throughput);
+        if (!info.receiver || !holds(in_.store, c)) return;
+        Photon photon;
+        photon.position = v.surface.position;
+        photon.power = path.state.throughput;
+        photon.direction = v.woWorld;
+        photon.ng = v.surface.ng;
+        photon.light = static_cast<uint16_t>(light_);
+        photon.medium = v.medium;
+        photon.flags = static_cast<uint16_t>((delta_ ? kFromDeltaLight : 0) |
+                                             (path.walk.causticAtGlossy(delta_) ? kGlossyGather : 0));
+        photon.path = path.code;
+        photon.key = hashCombine(in_.seed, hashCombine(index_, stored_++));
+        if (path.code.overflowed()) ++out_.ledger.unclassified;
+        out_.photons[static_cast<size_t>(c)].push_back(pack(photon));
+    }
+
+    // Light goes on from a Lambertian surface as so many paths that each carries a fair power, none or several: most
+    // paths are aimed at casters and carry little when they land, those that are not carry much. What is aimed here is
+    // meant to carry less.
+    void scatterFairly(const Vertex& v, const DiffuseBsdf& lambert, LightPath& path) {
+        const Rgb arriving = path.state.throughput;
+        const float copies = maxComponent(arriving * lambert.albedo) / (in_.fairPower * path.aimWeight);
+        const auto count = static_cast<uint32_t>(std::min(copies, kMostCopies) + path.sampler.next());
+        const Rgb each = arriving / std::min(copies, kMostCopies);
+        enter(LedgerColumn::Roulette, arriving);
+        ++path.depth;
+        for (uint32_t i = 0; i < count; ++i) {
+            out_.ledger[LedgerColumn::Roulette] -= FixedRgb(each);
+            LightPath copy = path;
+            if (count > 1) copy.sampler = path.sampler.fork(i);
+            copy.state.throughput = each;
+            if (leaveLambertian(v, lambert, copy)) waiting_.push_back(copy);
+        }
+    }
+
+    // False: the path ended, and its power has been entered.
+    bool leaveLambertian(const Vertex& v, const DiffuseBsdf& lambert, LightPath& path) {
+        const Rgb arriving = path.state.throughput;
+        const float uChoice = path.sampler.next();
+        DiffuseAim::Direction next;
+        const Rgb scattered = arriving * lambert.albedo;
+        move(LedgerColumn::AbsorbedSurface, arriving, scattered);
+        if (!in_.diffuseAim.sample(v, lambert, uChoice, path.sampler.next2D(), next)) {
+            enter(LedgerColumn::Sampling, scattered);
+            return false;
+        }
+        next.sample.weight = lambert.albedo * next.weight;
+        path.aimWeight *= next.weight;
+        move(LedgerColumn::Sampling, scattered, arriving * next.sample.weight);
+        return leave(v, next.sample, path);
+    }
+
+    bool bounce(const Vertex& v, LightPath& path) {
+        const Rgb arriving = path.state.throughput;
+        BsdfSample sample;
+        const float uLobe = path.sampler.next();
+        const Vec2 u = path.sampler.next2D();
+        if (std::holds_alternative<BlackBsdf>(v.bsdf) || !sampleBsdf(v.bsdf, v.wo, uLobe, u, sample)) {
+            enter(LedgerColumn::AbsorbedSurface, arriving);
+            return false;
+        }
+        const Rgb scattered = arriving * sample.weight;
+        move(LedgerColumn::AbsorbedSurface, arriving, scattered);
+        if (classOf(v.bsdf, sample) == VertexClass::Diffuse && in_.store == Store::Caustic) {
+            enter(LedgerColumn::Continued, scattered);
+            return false;
+        }
+        return leave(v, sample, path) && roulette(arriving, path);
+    }
+
+    bool leave(const Vertex& v, const BsdfSample& sample, LightPath& path) {
+        const Rgb sampled = path.state.throughput * sample.weight;
+        if (!scatter(v, sample, Quantity::Power, path.state)) {
+            enter(LedgerColumn::ShadingNormal, sampled);
+            return false;
+        }
+        move(LedgerColumn::ShadingNormal, sampled, path.state.throughput);
+        path.walk.pass(classOf(v.bsdf, sample));
+        path.code.append(sample.event);
+        return true;
+    }
+
+    // By what a path lost at a surface, so that what is kept has even power.
+    bool roulette(Rgb arriving, LightPath& path) {
+        const Rgb before = path.state.throughput;
+        const float keep = std::min(1.0F, maxComponent(before) / maxComponent(arriving));
+        if (keep >= 1) return true;
+        if (path.sampler.next() >= keep) {
+            enter(LedgerColumn::Roulette, before);
+            return false;
+        }
+        path.state.throughput /= keep;
+        move(LedgerColumn::Roulette, before, path.state.throughput);
+        return true;
+    }
+
+    static constexpr float kMostCopies = 64;
+
+    const LightTracerInput& in_;
+    LightPaths& out_;
+    WalkScratch scratch_;
+    size_t light_ = 0;
+    uint64_t index_ = 0;
+    uint64_t stored_ = 0;  // photons of this path
+    bool delta_ = false;
+    std::vector<LightPath> waiting_;
+};
+
+}  // namespace
+
+std::string_view name(Store store) {
+    constexpr std::array<std::string_view, 3> kNames = {"caustic", "indirect", "all"};
+    return kNames[static_cast<size_t>(store)];
+}
+
+// Rays of light that met a D, for each other ray: as its flux is to that of caustics, within bounds.
+constexpr double kLeastRaysAfterDiffuse = 0.5, kMostRaysAfterDiffuse = 2;
+
+float pilotFairPower(LightTracerInput input, ThreadPool& pool) {
+    constexpr uint64_t kPaths = 8192, kPathsPerChunk = 512;
+    input.fairPower = input.sources.fairPower();
+    if (input.store == Store::Caustic) return input.fairPower;
+    input.stage = Stage::EmissionPilot;
+    std::vector<LightPaths> results(kPaths / kPathsPerChunk);
+    pool.forEach(results.size(),
+                 [&](size_t i) { results[i] = traceLightPaths(input, i * kPathsPerChunk, (i + 1) * kPathsPerChunk); });
+    Ledger ledger(input.scene.lights().size(), input.scene.objects().size());
+    uint64_t before = 0, after = 0;
+    for (const LightPaths& paths : results) {
+        ledger.merge(paths.ledger);
+        before += paths.rays - paths.raysAfterDiffuse;
+        after += paths.raysAfterDiffuse;
+    }
+    const double share = std::clamp(ledger.fluxOf(static_cast<size_t>(PhotonClass::Indirect)) /
+                                        ledger.fluxOf(static_cast<size_t>(PhotonClass::Caustic)),
+                                    kLeastRaysAfterDiffuse, kMostRaysAfterDiffuse);
+    const double wanted = share * static_cast<double>(before);
+    return input.fairPower * static_cast<float>(std::clamp(static_cast<double>(after) / wanted, 1.0 / 64, 4.0));
+}
+
+LightPaths traceLightPaths(const LightTracerInput& input, uint64_t begin, uint64_t end) {
+    LightPaths out;
+    out.ledger = Ledger(input.scene.lights().size(), input.scene.objects().size());
+    LightTracer tracer(input, out);
+    for (uint64_t path = begin; path < end; ++path) tracer.trace(path);
+    out.rays = tracer.rays();
+    return out;
+}
+
+}  // namespace lsde

@@ -1,0 +1,56 @@
+// Single light paths: where they land, what is kept of them, and where their power went.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "photon/map_file.h"
+#include "sampling/sampler.h"
+#include "transport/diffuse_aim.h"
+#include "transport/emission.h"
+
+namespace lsde {
+
+// Which photons a map holds.
+enum class Store : uint8_t {
+    Caustic,   // L X+ D; paths end at the first D
+    Indirect,  // also light that met a D before
+    All,       // also direct light
+};
+std::string_view name(Store store);  // "caustic", "indirect", "all"
+inline bool holds(Store store, PhotonClass c) {
+    return c == PhotonClass::Caustic || store == Store::All || (c == PhotonClass::Indirect && store == Store::Indirect);
+}
+
+// Share of a light's paths that is not aimed at casters: more where light goes on from what it lights first.
+inline float wholeShareFor(Store store) {
+    return store == Store::Caustic ? kWholeEmissionShare : kWholeEmissionShareGoingOn;
+}
+
+struct LightTracerInput {
+    const Scene& scene;
+    const EmissionSampler& sources;
+    const DiffuseAim& diffuseAim;
+    Store store = Store::Indirect;
+    uint32_t maxDepth = 64;  // events of a path
+    uint64_t seed = 0;
+    float fairPower = 0;  // W: largest component of a photon's power once the light met a D, by splitting and roulette
+    Stage stage = Stage::Emission;
+};
+
+// What some paths came to, merged by sums that do not depend on the order.
+struct LightPaths {
+    std::array<std::vector<PackedPhoton>, kPhotonClasses> photons;
+    Ledger ledger;
+    uint64_t rays = 0;
+    uint64_t raysAfterDiffuse = 0;  // of them
+};
+
+// The fair power with which light that met a D takes as many rays as its share is, found by a pilot whose photons are
+// discarded: a function of scene, settings and seed.
+float pilotFairPower(LightTracerInput input, ThreadPool& pool);
+
+// Paths [begin, end) of the emission.
+LightPaths traceLightPaths(const LightTracerInput& input, uint64_t begin, uint64_t end);
+
+}  // namespace lsde

@@ -1,0 +1,148 @@
+#include "photon/bandwidth.h"
+
+#include <array>
+#include <bit>
+
+namespace lsde {
+
+namespace {
+
+constexpr int kMostLevels = 24;
+// Standard errors by which the power in a ring may differ from that in the disc of equal area within it.
+constexpr double kRingTolerance = 3;
+
+// Moments of the photons between one radius and the next smaller one.
+struct Ring {
+    double count = 0;
+    double p = 0, pd2 = 0;              // sums of power, times distance^2
+    double pp = 0, ppd2 = 0, ppd4 = 0;  // of power^2, times distance^2 and ^4
+
+    void add(double power, double d2) {
+        ++count;
+        p += power;
+        pd2 += power * d2;
+        pp += power * power;
+        ppd2 += power * power * d2;
+        ppd4 += power * power * d2 * d2;
+    }
+    void add(const Ring& r) {
+        count += r.count;
+        p += r.p;
+        pd2 += r.pd2;
+        pp += r.pp;
+        ppd2 += r.ppd2;
+        ppd4 += r.ppd4;
+    }
+};
+
+struct Estimate {
+    double value = 0, variance = 0;
+};
+
+// By Epanechnikov's kernel, up to a factor that all radii share.
+Estimate estimateOf(const Ring& within, double r2, double share) {
+    const double scale = 1 / (r2 * share);
+    return {scale * (within.p - within.pd2 / r2),
+            scale * scale * (within.pp - 2 * within.ppd2 / r2 + within.ppd4 / (r2 * r2))};
+}
+
+class RadiusSearch {
+  public:
+    RadiusSearch(const PhotonSource& source, uint32_t photon, const BandwidthRule& rule, BandwidthScratch& scratch)
+        : source_(source), photon_(photon), rule_(rule), scratch_(scratch), query_(queryAt(source, photon)) {}
+
+    Bandwidth run() {
+        source_.extent.around(query_.point.position, query_.point.ng, query_.maxRadius, scratch_.surface);
+        r0_ = std::visit([&](const auto& index) { return distanceTo(index, rule_.leastCount); }, source_.index);
+        if (r0_ >= query_.maxRadius) return {query_.maxRadius, static_cast<uint32_t>(scratch_.density.accepted.size())};
+        std::array<Estimate, kMostLevels> estimates;
+        int known = 0;
+        Ring within;
+        for (int level = 0;; ++level) {
+            if (level == known) {
+                const int more = std::min(known + 2, kMostLevels);
+                std::visit([&](const auto& index) { fillRings(index, known, more); }, source_.index);
+                known = more;
+            }
+            const float r2 = r0_ * r0_ * static_cast<float>(1 << level);
+            const Ring& ring = rings_[static_cast<size_t>(level)];
+            // Light that sets in at an edge is plain in the ring, long before the kernel, which ends there, takes it
+            // in.
+            if (level > 0 && square(ring.p - within.p) > square(kRingTolerance) * (ring.pp + within.pp))
+                return atLevel(level - 1, within.count);
+            within.add(ring);
+            Estimate& e = estimates[static_cast<size_t>(level)];
+            e = estimateOf(within, r2, scratch_.surface.share(std::min(std::sqrt(r2), query_.maxRadius)));
+            for (int smaller = 0; smaller < level; ++smaller) {
+                // The difference's variance if light were as even as the larger one has it. The smaller one's own would
+                // be low where it is too low itself, which would choose radii by their error's sign.
+                const double variance = e.variance * static_cast<double>(1 << (level - smaller));
+                if (square(e.value - estimates[static_cast<size_t>(smaller)].value) >
+                    square(rule_.tolerance) * variance)
+                    return atLevel(level - 1, within.count - rings_[static_cast<size_t>(level)].count);
+            }
+            const bool last = level + 1 == kMostLevels || 2 * r2 > square(query_.maxRadius) ||
+                              2 * within.count > static_cast<double>(rule_.mostCount);
+            if (last) return atLevel(level, within.count);
+        }
+    }
+
+  private:
+    Bandwidth atLevel(int level, double count) const {
+        return {r0_ * std::sqrt(static_cast<float>(1 << level)), static_cast<uint32_t>(count)};
+    }
+
+    template <typename Index>
+    float distanceTo(const Index& index, uint32_t count) {
+        DensityQuery query = query_;
+        query.minCount = count + 1;  // the photon itself is one
+        return gatherPhotons(index, query, scratch_.density, [](uint32_t, float) {}).radius;
+    }
+
+    // Levels [from, to): what lies between r0 2^((level-1)/2) and r0 2^(level/2); level 0: all within r0.
+    template <typename Index>
+    void fillRings(const Index& index, int from, int to) {
+        const float radius = std::min(r0_ * std::sqrt(static_cast<float>(1 << (to - 1))), query_.maxRadius);
+        index.within(query_.point.position, radius, scratch_.density.found);
+        acceptPhotons(index.tree(), query_, radius, scratch_.density);
+        const float invR0Squared = 1 / (r0_ * r0_);
+        for (const DensityScratch::Candidate& c : scratch_.density.accepted) {
+            const float ratio = c.entrySquared * invR0Squared;
+            const int level = ratio < 1 ? 0 : static_cast<int>(std::bit_cast<uint32_t>(ratio) >> 23) - 126;  // 1 + log2
+            if (level < from || level >= to || c.index == photon_) continue;
+            if (source_.groups[c.index] >= source_.groupCount) continue;
+            if (!scratch_.surface.whole() && scratch_.surface.hides(index.tree().position(c.index))) continue;
+            const Rgb power = unpackPower(index.tree().payload[c.index].power);
+            rings_[static_cast<size_t>(level)].add(power.x + power.y + power.z, c.distanceSquared);
+        }
+    }
+
+    const PhotonSource& source_;
+    uint32_t photon_;
+    const BandwidthRule& rule_;
+    BandwidthScratch& scratch_;
+    DensityQuery query_;
+    float r0_ = 0;  // m
+    std::array<Ring, kMostLevels> rings_{};
+};
+
+}  // namespace
+
+DensityQuery queryAt(const PhotonSource& source, uint32_t photon) {
+    const PhotonTreeView& photons = source.photons();
+    const PhotonPayload& at = photons.payload[photon];
+    DensityQuery query;
+    query.point.position = photons.position(photon);
+    query.point.ng = query.point.ns = unpackNormal(at.normal);
+    query.sideNormal = (at.flags & kLandedOnFront) != 0 ? query.point.ng : -query.point.ng;
+    query.medium = at.medium;
+    query.maxRadius = source.maxRadius;
+    return query;
+}
+
+Bandwidth consistentBandwidth(const PhotonSource& source, uint32_t photon, const BandwidthRule& rule,
+                              BandwidthScratch& scratch) {
+    return RadiusSearch(source, photon, rule, scratch).run();
+}
+
+}  // namespace lsde

@@ -1,0 +1,136 @@
+#include "photon/irradiance_cache.h"
+
+#include <bit>
+
+#include "base/hash.h"
+
+namespace lsde {
+
+namespace {
+
+enum State : uint8_t { kUnknown, kInTheMaking, kKnown };
+
+// Cosine of the angle between normals up to which one place's irradiance says something of the other's.
+constexpr float kSameDirection = 0.95F;
+
+// A record stands for its run if its disc holds as many photons as this many runs.
+constexpr uint32_t kRunsInDisc = 8;
+// And for a point that is closer than this share of the disc's radius.
+constexpr float kNear = 0.4F;
+
+// Uniform on the unit disc.
+Vec2 hashedDiscPoint(Vec3 p) {
+    const uint64_t h = mix64(mix64(std::bit_cast<uint32_t>(p.x) | uint64_t{std::bit_cast<uint32_t>(p.y)} << 32) +
+                             std::bit_cast<uint32_t>(p.z));
+    const float radius = std::sqrt(static_cast<float>(h >> 40) * 0x1p-24F);
+    const float angle = static_cast<float>(h & 0xffffff) * (0x1p-24F * 2 * kPi);
+    return {radius * std::cos(angle), radius * std::sin(angle)};
+}
+
+}  // namespace
+
+IrradianceCache::IrradianceCache(const PhotonSource& source, const IrradianceRule& rule)
+    : source_(source), photons_(source.photons()), rule_(rule) {
+    for (size_t i = 0; i < levels_.size(); ++i) {
+        const size_t runs = (photons_.blocks.size() + kBlocksPerRecord[i] - 1) / kBlocksPerRecord[i];
+        Level& level = levels_[i];
+        level.photonsPerRecord = kBlocksPerRecord[i] * kBlockSize;
+        level.states = std::vector<std::atomic<uint8_t>>(runs);
+        level.bandwidths = std::make_unique_for_overwrite<Bandwidth[]>(runs);
+        level.irradiance = std::make_unique_for_overwrite<Rgb[]>(runs * (source.groupCount + 1));
+    }
+}
+
+void IrradianceCache::make(uint32_t photon, Bandwidth& bandwidth, std::span<Rgb> irradiance,
+                           BandwidthScratch& scratch) const {
+    bandwidth = consistentBandwidth(source_, photon, rule_.bandwidth, scratch);
+    std::fill(irradiance.begin(), irradiance.end(), Rgb(0));
+    if (bandwidth.count < rule_.smoothCount) return;
+    const float radiusSquared = square(bandwidth.radius);
+    for (const DensityScratch::Candidate& c : scratch.density.accepted) {
+        const uint16_t group = source_.groups[c.index];
+        // The photon itself is left out: it is there for certain.
+        if (c.index == photon || group >= source_.groupCount || !(c.entrySquared < radiusSquared)) continue;
+        if (!scratch.surface.whole() && scratch.surface.hides(photons_.position(c.index))) continue;
+        const Rgb e = unpackPower(photons_.payload[c.index].power) * epanechnikov(c.distanceSquared, radiusSquared);
+        irradiance[group] += e;
+        irradiance.back() += e;
+    }
+    const auto scale = static_cast<float>(source_.perPath) / scratch.surface.share(bandwidth.radius);
+    for (Rgb& e : irradiance) e *= scale;
+}
+
+void IrradianceCache::recordOf(Level& level, size_t run, Record& record, BandwidthScratch& scratch) {
+    const size_t groups = source_.groupCount + 1;  // and their sum
+    std::atomic<uint8_t>& state = level.states[run];
+    const std::span<Rgb> kept(&level.irradiance[run * groups], groups);
+    uint8_t expected = kUnknown;
+    const bool known = state.load(std::memory_order_acquire) == kKnown;
+    if (!known && state.compare_exchange_strong(expected, kInTheMaking, std::memory_order_acquire)) {
+        make(record.photon, level.bandwidths[run], kept, scratch);
+        state.store(kKnown, std::memory_order_release);
+    } else if (!known && expected == kInTheMaking) {
+        // Another thread is at it; waiting would cost as much as making it here.
+        scratch.irradiance.resize(groups);
+        make(record.photon, record.bandwidth, scratch.irradiance, scratch);
+        record.irradiance = scratch.irradiance;
+        return;
+    }
+    record.bandwidth = level.bandwidths[run];
+    record.irradiance = kept;
+}
+
+bool IrradianceCache::sameSurface(const DensityQuery& query, uint32_t photon, BandwidthScratch& scratch) const {
+    const DensityQuery there = queryAt(source_, photon);
+    if (there.medium != query.medium || glm::dot(there.sideNormal, query.sideNormal) < kSameDirection) return false;
+    const Vec3 away = there.point.position - query.point.position;
+    if (std::fabs(glm::dot(away, query.point.ng)) > kPlaneThickness * source_.maxRadius) return false;
+    source_.extent.around(query.point.position, query.point.ng, glm::length(away), scratch.surface);
+    return scratch.surface.whole() || !scratch.surface.hides(there.point.position);
+}
+
+bool IrradianceCache::nearest(const DensityQuery& query, Vec3 p, Record& record, uint32_t& photonsPerRecord,
+                              BandwidthScratch& scratch) {
+    const size_t block = nearestBlock(photons_, p);
+    for (size_t i = 0; i < levels_.size(); ++i) {
+        Level& level = levels_[i];
+        const size_t run = block / kBlocksPerRecord[i];
+        const uint64_t first = run * level.photonsPerRecord;
+        const uint64_t end = std::min(first + level.photonsPerRecord, photons_.count);
+        record.photon = static_cast<uint32_t>((first + end) / 2);
+        if (!sameSurface(query, record.photon, scratch)) continue;
+        recordOf(level, run, record, scratch);
+        photonsPerRecord = level.photonsPerRecord;
+        const bool near =
+            glm::length(query.point.position - photons_.position(record.photon)) < kNear * record.bandwidth.radius;
+        if (i + 1 == levels_.size() || (near && record.bandwidth.count >= kRunsInDisc * photonsPerRecord)) return true;
+    }
+    return false;
+}
+
+CachedLight IrradianceCache::at(const DensityQuery& query, bool wantIrradiance, BandwidthScratch& scratch) {
+    CachedLight light;
+    if (photons_.count == 0) return light;
+    const Vec3 p = query.point.position;
+    Record record;
+    uint32_t photonsPerRecord = 0;
+    if (!nearest(query, p, record, photonsPerRecord, scratch)) return light;
+    const Bandwidth& there = record.bandwidth;
+    light.bandwidth.radius = std::max(0.0F, there.radius - glm::length(p - photons_.position(record.photon)));
+    light.bandwidth.count =
+        static_cast<uint32_t>(static_cast<float>(there.count) * square(light.bandwidth.radius / there.radius));
+    if (!wantIrradiance || light.bandwidth.count < rule_.smoothCount || light.bandwidth.radius < query.minRadius)
+        return light;
+    const float spacing =
+        there.radius * std::sqrt(static_cast<float>(photonsPerRecord) / static_cast<float>(there.count + 1));
+    const Vec2 offset = std::min(spacing, 0.5F * there.radius) * hashedDiscPoint(p);
+    const Frame frame(query.point.ng);
+    Record other;
+    if (nearest(query, p + offset.x * frame.x + offset.y * frame.y, other, photonsPerRecord, scratch) &&
+        other.bandwidth.count >= rule_.smoothCount &&
+        glm::length(p - photons_.position(other.photon)) < 1.5F * kNear * other.bandwidth.radius)
+        light.irradiance = other.irradiance;
+    return light;
+}
+
+}  // namespace lsde

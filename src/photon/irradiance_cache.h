@@ -1,0 +1,64 @@
+// What is found out about the light at some of the photons, when it is first asked for: how far to smooth there, and
+// the irradiance (Christensen 1999) where that is far.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <memory>
+#include <vector>
+
+#include "photon/bandwidth.h"
+
+namespace lsde {
+
+struct IrradianceRule {
+    BandwidthRule bandwidth;
+    uint32_t smoothCount = 0;  // photons in the bandwidth from which on irradiance is kept
+};
+
+struct CachedLight {
+    // From that of photons near the point: the disc about it that lies in theirs, and its share of their count.
+    Bandwidth bandwidth;
+    // W/m2 by group, and last their sum, which does not depend on the groups. Empty: not known here, gather.
+    std::span<const Rgb> irradiance;
+};
+
+// Records at photons in the middle of runs of the tree's blocks: few where light is smooth, one in each block where it
+// is not. They are functions of the map alone: who asks first, and from which thread, changes nothing.
+class IrradianceCache {
+  public:
+    IrradianceCache(const PhotonSource& source, const IrradianceRule& rule);
+
+    // At the query's point, on its side and in its medium. Irradiance if it is wanted, and if the bandwidth is at least
+    // the query's least radius. What lies between records is dithered: the point is moved by about their distance, by a
+    // hash of its position, before the nearest one answers; the mean over many points is smooth.
+    CachedLight at(const DensityQuery& query, bool wantIrradiance, BandwidthScratch& scratch);
+
+  private:
+    static constexpr std::array<uint32_t, 3> kBlocksPerRecord = {16, 4, 1};
+    struct Record {
+        uint32_t photon = 0;
+        Bandwidth bandwidth;
+        std::span<const Rgb> irradiance;
+    };
+    // The records for runs of one length.
+    struct Level {
+        uint32_t photonsPerRecord = 0;
+        std::vector<std::atomic<uint8_t>> states;
+        std::unique_ptr<Bandwidth[]> bandwidths;
+        std::unique_ptr<Rgb[]> irradiance;  // of run i and group g: [i * (groups + 1) + g]
+    };
+    // False: none of the query's surface is near p.
+    bool nearest(const DensityQuery& query, Vec3 p, Record& record, uint32_t& photonsPerRecord,
+                 BandwidthScratch& scratch);
+    bool sameSurface(const DensityQuery& query, uint32_t photon, BandwidthScratch& scratch) const;
+    void recordOf(Level& level, size_t run, Record& record, BandwidthScratch& scratch);
+    void make(uint32_t photon, Bandwidth& bandwidth, std::span<Rgb> irradiance, BandwidthScratch& scratch) const;
+
+    PhotonSource source_;
+    PhotonTreeView photons_;
+    IrradianceRule rule_;
+    std::array<Level, kBlocksPerRecord.size()> levels_;
+};
+
+}  // namespace lsde

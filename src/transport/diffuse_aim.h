@@ -1,0 +1,39 @@
+// Where light goes on from a diffuse surface: towards what bends light, and anywhere.
+#pragma once
+
+#include <vector>
+
+#include "transport/vertex.h"
+
+namespace lsde {
+
+// Light that lit a floor and then finds a glass is as much a caustic as the lamp's own, but few of a floor's directions
+// lead there. Half of the directions are drawn from the cones of the casters' bounding spheres, half from the surface's
+// own lobe (a defensive mixture, Hesterberg 1995): the weight is lobe density / mixture density, 2 at most.
+class DiffuseAim {
+  public:
+    static constexpr float kAimedShare = 0.5F;
+
+    // off: everything is drawn from the lobe.
+    DiffuseAim(const Scene& scene, bool on);
+
+    struct Direction {
+        BsdfSample sample;  // weight, pdfs and event as of the lobe alone
+        float weight = 1;   // lobe density / mixture density
+    };
+    // At a Lambertian surface. uChoice chooses the part. False: no light goes on.
+    bool sample(const Vertex& v, const DiffuseBsdf& bsdf, float uChoice, Vec2 u, Direction& out) const;
+    // Density of a direction (1/sr, world) by the mixture; for tests.
+    float pdf(const Vertex& v, const DiffuseBsdf& bsdf, Vec3 direction) const;
+
+  private:
+    // More than these are not worth their cost at every bounce.
+    static constexpr size_t kMostCasters = 16;
+    struct Parts;
+    Parts partsAt(const Vertex& v) const;
+    float mixturePdf(const Parts& parts, float lobePdf, Vec3 direction) const;
+
+    std::vector<Sphere> casters_;
+};
+
+}  // namespace lsde
