@@ -16,7 +16,9 @@ namespace lsde {
 namespace {
 
 constexpr uint64_t kDefaultSamples = 64;
-constexpr double kEmissionShare = 0.33;  // of a time limit, where there are caustics
+// Of a time limit, where there are caustics: what the pixels can spare, within bounds.
+constexpr double kLeastEmissionShare = 0.33, kMostEmissionShare = 0.5;
+constexpr double kPixelSeconds = 1e-4;  // for the samples that a pixel should get, roughly
 constexpr uint32_t kPilotRadiusPhotons = 50;
 
 // What ends the camera pass.
@@ -112,6 +114,11 @@ class Render {
     }
 
   private:
+    double emissionShare() const {
+        const double pixels = static_cast<double>(camera_.filmWidth()) * camera_.filmHeight();
+        return std::clamp(1 - kPixelSeconds * pixels / clock_.limit(), kLeastEmissionShare, kMostEmissionShare);
+    }
+
     double reserve() const {  // s: developing and writing the picture
         const double values = static_cast<double>(camera_.filmWidth()) * camera_.filmHeight() * 3 *
                               static_cast<double>(layers_.filmLayers().size());
@@ -130,7 +137,7 @@ class Render {
 
     PhotonMap map() {
         if (clock_.limited() && settings_.map.empty() && !settings_.photons)
-            return mapByTime(scene_, emitSettings(), clock_, kEmissionShare * clock_.left(), run_);
+            return mapByTime(scene_, emitSettings(), clock_, emissionShare() * clock_.left(), run_);
         SourcedMap sourced =
             mapByCount(scene_, {settings_.map, settings_.cache, settings_.otherScene, emitSettings()}, run_);
         result_.cachedMap = sourced.cached;
@@ -226,7 +233,7 @@ void Render::progressivePasses() {
         run_.seed = hashCombine(seed, pass);  // independent photons
         const bool byTime = clock_.limited() && !settings_.photons && pass == 0;
         const PhotonMap map =
-            byTime ? mapByTime(scene_, emit, clock_, kEmissionShare * slice, run_) : emitPhotons(scene_, emit, run_);
+            byTime ? mapByTime(scene_, emit, clock_, emissionShare() * slice, run_) : emitPhotons(scene_, emit, run_);
         run_.seed = seed;
         note(map);
         if (byTime) pathsEach = map.header.emittedPaths();

@@ -10,10 +10,15 @@ namespace {
 constexpr int kMostLevels = 24;
 // Standard errors by which the power in a ring may differ from that in the disc of equal area within it.
 constexpr double kRingTolerance = 3;
+// Photons whose own block of the tree is this many times as dense as the smallest disc belong to something else, beyond
+// an edge. A few of them are no chance: a block's density has an error of a quarter.
+constexpr float kDense = 4;
+constexpr uint32_t kFewDense = 3;
 
 // Moments of the photons between one radius and the next smaller one.
 struct Ring {
     double count = 0;
+    uint32_t dense = 0;                 // photons among many more than the estimate has, see kDense
     double p = 0, pd2 = 0;              // sums of power, times distance^2
     double pp = 0, ppd2 = 0, ppd4 = 0;  // of power^2, times distance^2 and ^4
 
@@ -68,6 +73,7 @@ class RadiusSearch {
             const Ring& ring = rings_[static_cast<size_t>(level)];
             // Light that sets in at an edge is plain in the ring, long before the kernel, which ends there, takes it
             // in.
+            if (level > 0 && ring.dense >= kFewDense) return atLevel(level - 1, within.count);
             if (level > 0 && square(ring.p - within.p) > square(kRingTolerance) * (ring.pp + within.pp))
                 return atLevel(level - 1, within.count);
             within.add(ring);
@@ -113,8 +119,17 @@ class RadiusSearch {
             if (source_.groups[c.index] >= source_.groupCount) continue;
             if (!scratch_.surface.whole() && scratch_.surface.hides(index.tree().position(c.index))) continue;
             const Rgb power = unpackPower(index.tree().payload[c.index].power);
-            rings_[static_cast<size_t>(level)].add(power.x + power.y + power.z, c.distanceSquared);
+            Ring& ring = rings_[static_cast<size_t>(level)];
+            ring.add(power.x + power.y + power.z, c.distanceSquared);
+            if (level > 0 && isDense(index.tree(), c.index / kBlockSize)) ++ring.dense;
         }
+    }
+
+    bool isDense(const PhotonTreeView& tree, uint32_t block) {
+        if (block == lastBlock_) return lastIsDense_;
+        lastBlock_ = block;
+        const float area = boxArea(tree, block);
+        return lastIsDense_ = kBlockSize * kPi * r0_ * r0_ > kDense * static_cast<float>(rule_.leastCount) * area;
     }
 
     const PhotonSource& source_;
@@ -123,6 +138,8 @@ class RadiusSearch {
     BandwidthScratch& scratch_;
     DensityQuery query_;
     float r0_ = 0;  // m
+    uint32_t lastBlock_ = ~0U;
+    bool lastIsDense_ = false;
     std::array<Ring, kMostLevels> rings_{};
 };
 

@@ -70,6 +70,15 @@ class SphereSearch {
     NeighbourList& out_;
 };
 
+std::array<float, 3> sidesOf(const KdNode& node, uint32_t lane) {
+    return {node.hiX[lane] - node.loX[lane], node.hiY[lane] - node.loY[lane], node.hiZ[lane] - node.loZ[lane]};
+}
+
+// Of a box of photons, which lie on surfaces: its two longer sides span their area, or somewhat more than that.
+float areaOf(const std::array<float, 3>& side) {
+    return std::max({side[0] * side[1], side[0] * side[2], side[1] * side[2]});
+}
+
 }  // namespace
 
 KdShape::KdShape(uint64_t photons) : blocks(divideUp(photons, kBlockSize)) {
@@ -92,6 +101,11 @@ void KdIndex::within(Vec3 centre, float radius, NeighbourList& out) const {
 float KdIndex::reachOfAll(Vec3 centre) const {
     const Vec3 farthest = glm::max(glm::abs(tree_.bounds.lo - centre), glm::abs(tree_.bounds.hi - centre));
     return std::max(1.0001F * glm::length(farthest), kLeastRadius);  // above all roundings
+}
+
+float boxArea(const PhotonTreeView& tree, uint32_t block) {
+    const KdShape shape(tree.count);
+    return areaOf(sidesOf(tree.nodes[shape.first[0] + block / kNodeWidth], block % kNodeWidth));
 }
 
 uint32_t nearestBlock(const PhotonTreeView& tree, Vec3 p) {
@@ -119,10 +133,8 @@ float guessRadius(const PhotonTreeView& tree, Vec3 centre, uint32_t count) {
         _mm256_store_ps(distances.data(), d);
         distanceSquared = distances[lane];
     }
-    // Photons lie on surfaces: the block's two longer sides span its area, or somewhat more than that.
-    const std::array<float, 3> side = {at->hiX[lane] - at->loX[lane], at->hiY[lane] - at->loY[lane],
-                                       at->hiZ[lane] - at->loZ[lane]};
-    const float area = std::max({side[0] * side[1], side[0] * side[2], side[1] * side[2]});
+    const std::array<float, 3> side = sidesOf(*at, lane);
+    const float area = areaOf(side);
     const float disc = std::sqrt(kSurplus * static_cast<float>(count) * area / (kPi * kBlockSize));
     // Without area (one photon, or all in a row), any positive number will do, and grows.
     const float least = 1e-3F * (side[0] + side[1] + side[2]) + 1e-6F * tree.bounds.radius() + kLeastRadius;
