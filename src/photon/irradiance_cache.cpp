@@ -15,6 +15,9 @@ constexpr float kSameDirection = 0.95F;
 
 // A record stands for its run if its disc holds as many photons as this many runs.
 constexpr uint32_t kRunsInDisc = 8;
+// Records that are dense must be cheap: a bound on their photons, between that need and what the rule asks for.
+constexpr uint32_t mostCountOf(uint32_t photonsPerRecord) { return 31 * photonsPerRecord + 512; }
+
 // And for a point that is closer than this share of the disc's radius.
 constexpr float kNear = 0.4F;
 
@@ -35,15 +38,17 @@ IrradianceCache::IrradianceCache(const PhotonSource& source, const IrradianceRul
         const size_t runs = (photons_.blocks.size() + kBlocksPerRecord[i] - 1) / kBlocksPerRecord[i];
         Level& level = levels_[i];
         level.photonsPerRecord = kBlocksPerRecord[i] * kBlockSize;
+        level.rule = rule.bandwidth;
+        level.rule.mostCount = std::min(level.rule.mostCount, mostCountOf(level.photonsPerRecord));
         level.states = std::vector<std::atomic<uint8_t>>(runs);
         level.bandwidths = std::make_unique_for_overwrite<Bandwidth[]>(runs);
         level.irradiance = std::make_unique_for_overwrite<Rgb[]>(runs * (source.groupCount + 1));
     }
 }
 
-void IrradianceCache::make(uint32_t photon, Bandwidth& bandwidth, std::span<Rgb> irradiance,
+void IrradianceCache::make(uint32_t photon, const BandwidthRule& rule, Bandwidth& bandwidth, std::span<Rgb> irradiance,
                            BandwidthScratch& scratch) const {
-    bandwidth = consistentBandwidth(source_, photon, rule_.bandwidth, scratch);
+    bandwidth = consistentBandwidth(source_, photon, rule, scratch);
     std::fill(irradiance.begin(), irradiance.end(), Rgb(0));
     if (bandwidth.count < rule_.smoothCount) return;
     const float radiusSquared = square(bandwidth.radius);
@@ -67,12 +72,12 @@ void IrradianceCache::recordOf(Level& level, size_t run, Record& record, Bandwid
     uint8_t expected = kUnknown;
     const bool known = state.load(std::memory_order_acquire) == kKnown;
     if (!known && state.compare_exchange_strong(expected, kInTheMaking, std::memory_order_acquire)) {
-        make(record.photon, level.bandwidths[run], kept, scratch);
+        make(record.photon, level.rule, level.bandwidths[run], kept, scratch);
         state.store(kKnown, std::memory_order_release);
     } else if (!known && expected == kInTheMaking) {
         // Another thread is at it; waiting would cost as much as making it here.
         scratch.irradiance.resize(groups);
-        make(record.photon, record.bandwidth, scratch.irradiance, scratch);
+        make(record.photon, level.rule, record.bandwidth, scratch.irradiance, scratch);
         record.irradiance = scratch.irradiance;
         return;
     }
@@ -94,6 +99,8 @@ bool IrradianceCache::nearest(const DensityQuery& query, Vec3 p, Record& record,
     const size_t block = nearestBlock(photons_, p);
     for (size_t i = 0; i < levels_.size(); ++i) {
         Level& level = levels_[i];
+        const bool last = i + 1 == levels_.size();
+        if (!last && level.rule.mostCount < kRunsInDisc * level.photonsPerRecord) continue;
         const size_t run = block / kBlocksPerRecord[i];
         const uint64_t first = run * level.photonsPerRecord;
         const uint64_t end = std::min(first + level.photonsPerRecord, photons_.count);
@@ -103,7 +110,7 @@ bool IrradianceCache::nearest(const DensityQuery& query, Vec3 p, Record& record,
         photonsPerRecord = level.photonsPerRecord;
         const bool near =
             glm::length(query.point.position - photons_.position(record.photon)) < kNear * record.bandwidth.radius;
-        if (i + 1 == levels_.size() || (near && record.bandwidth.count >= kRunsInDisc * photonsPerRecord)) return true;
+        if (last || (near && record.bandwidth.count >= kRunsInDisc * photonsPerRecord)) return true;
     }
     return false;
 }

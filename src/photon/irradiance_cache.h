@@ -44,6 +44,7 @@ class IrradianceCache {
     // The records for runs of one length.
     struct Level {
         uint32_t photonsPerRecord = 0;
+        BandwidthRule rule;
         std::vector<std::atomic<uint8_t>> states;
         std::unique_ptr<Bandwidth[]> bandwidths;
         std::unique_ptr<Rgb[]> irradiance;  // of run i and group g: [i * (groups + 1) + g]
@@ -53,7 +54,8 @@ class IrradianceCache {
                  BandwidthScratch& scratch);
     bool sameSurface(const DensityQuery& query, uint32_t photon, BandwidthScratch& scratch) const;
     void recordOf(Level& level, size_t run, Record& record, BandwidthScratch& scratch);
-    void make(uint32_t photon, Bandwidth& bandwidth, std::span<Rgb> irradiance, BandwidthScratch& scratch) const;
+    void make(uint32_t photon, const BandwidthRule& rule, Bandwidth& bandwidth, std::span<Rgb> irradiance,
+              BandwidthScratch& scratch) const;
 
     PhotonSource source_;
     PhotonTreeView photons_;
