@@ -47,7 +47,8 @@ class LightTracer {
         LightWalkClass walk;
         PathCode code;
         uint32_t depth = 0;
-        float aimWeight = 1;  // product of the weights of directions aimed since the light met a D
+        bool unaimed = false;  // left a Lambertian surface by its own lobe
+        float aimWeight = 1;   // product of the weights of directions aimed since the light met a D
     };
 
     void enter(LedgerColumn column, Rgb power) { out_.ledger[column] += FixedRgb(power); }
@@ -64,6 +65,11 @@ class LightTracer {
             Vertex v;
             const bool arrives = advance(in_.scene, path.state, v, scratch_);
             if (path.walk.metDiffuse()) out_.raysAfterDiffuse += scratch_.rays - raysBefore;
+            if (path.unaimed) {
+                ++out_.unaimedBounces;
+                out_.unaimedEscaped += arrives ? 0 : 1;
+                path.unaimed = false;
+            }
             if (!arrives) {
                 // What a medium takes from light that never arrives anywhere is not told apart from what escapes.
                 enter(LedgerColumn::Escaped, before);
@@ -144,6 +150,7 @@ class LightTracer {
         }
         next.sample.weight = lambert.albedo * next.weight;
         path.aimWeight *= next.weight;
+        path.unaimed = !next.aimed;
         move(LedgerColumn::Sampling, scattered, arriving * next.sample.weight);
         return leave(v, next.sample, path);
     }
@@ -212,28 +219,35 @@ std::string_view name(Store store) {
 }
 
 // Rays of light that met a D, for each other ray: as its flux is to that of caustics, within bounds.
-constexpr double kLeastRaysAfterDiffuse = 0.5, kMostRaysAfterDiffuse = 2;
+constexpr double kLeastRaysAfterDiffuse = 0.8, kMostRaysAfterDiffuse = 2;
 
-float pilotFairPower(LightTracerInput input, ThreadPool& pool) {
+PilotFindings pilotEmission(LightTracerInput input, ThreadPool& pool) {
     constexpr uint64_t kPaths = 8192, kPathsPerChunk = 512;
+    constexpr float kLeastAimed = 0.25F, kMostAimed = 0.9F;
     input.fairPower = input.sources.fairPower();
-    if (input.store == Store::Caustic) return input.fairPower;
+    if (input.store == Store::Caustic) return {input.fairPower, kPilotDiffuseAimShare};
     input.stage = Stage::EmissionPilot;
     std::vector<LightPaths> results(kPaths / kPathsPerChunk);
     pool.forEach(results.size(),
                  [&](size_t i) { results[i] = traceLightPaths(input, i * kPathsPerChunk, (i + 1) * kPathsPerChunk); });
-    Ledger ledger(input.scene.lights().size(), input.scene.objects().size());
-    uint64_t before = 0, after = 0;
+    LightPaths sum;
+    sum.ledger = Ledger(input.scene.lights().size(), input.scene.objects().size());
     for (const LightPaths& paths : results) {
-        ledger.merge(paths.ledger);
-        before += paths.rays - paths.raysAfterDiffuse;
-        after += paths.raysAfterDiffuse;
+        sum.ledger.merge(paths.ledger);
+        sum.rays += paths.rays;
+        sum.raysAfterDiffuse += paths.raysAfterDiffuse;
+        sum.unaimedBounces += paths.unaimedBounces;
+        sum.unaimedEscaped += paths.unaimedEscaped;
     }
-    const double share = std::clamp(ledger.fluxOf(static_cast<size_t>(PhotonClass::Indirect)) /
-                                        ledger.fluxOf(static_cast<size_t>(PhotonClass::Caustic)),
-                                    kLeastRaysAfterDiffuse, kMostRaysAfterDiffuse);
-    const double wanted = share * static_cast<double>(before);
-    return input.fairPower * static_cast<float>(std::clamp(static_cast<double>(after) / wanted, 1.0 / 64, 4.0));
+    const double caustic = sum.ledger.fluxOf(static_cast<size_t>(PhotonClass::Caustic));
+    const double indirect = sum.ledger.fluxOf(static_cast<size_t>(PhotonClass::Indirect));
+    const double share = caustic > 0 ? std::clamp(indirect / caustic, kLeastRaysAfterDiffuse, kMostRaysAfterDiffuse)
+                                     : kMostRaysAfterDiffuse;
+    const double wanted = share * static_cast<double>(sum.rays - sum.raysAfterDiffuse);
+    const double fairer = std::clamp(static_cast<double>(sum.raysAfterDiffuse) / std::max(1.0, wanted), 1.0 / 64, 4.0);
+    const float escape =
+        static_cast<float>(sum.unaimedEscaped) / static_cast<float>(std::max<uint64_t>(1, sum.unaimedBounces));
+    return {input.fairPower * static_cast<float>(fairer), std::clamp(escape, kLeastAimed, kMostAimed)};
 }
 
 LightPaths traceLightPaths(const LightTracerInput& input, uint64_t begin, uint64_t end) {

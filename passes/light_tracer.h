@@ -43,12 +43,17 @@ struct LightPaths {
     std::array<std::vector<PackedPhoton>, kPhotonClasses> photons;
     Ledger ledger;
     uint64_t rays = 0;
-    uint64_t raysAfterDiffuse = 0;  // of them
+    uint64_t raysAfterDiffuse = 0;                    // of them
+    uint64_t unaimedBounces = 0, unaimedEscaped = 0;  // from Lambertian surfaces, by their own lobe
 };
 
-// The fair power with which light that met a D takes as many rays as its share is, found by a pilot whose photons are
-// discarded: a function of scene, settings and seed.
-float pilotFairPower(LightTracerInput input, ThreadPool& pool);
+// What a pilot finds out, whose photons are discarded: a function of scene, settings and seed.
+struct PilotFindings {
+    float fairPower = 0;        // W: light that met a D then takes as many rays as its share is
+    float diffuseAimShare = 0;  // of the directions from diffuse surfaces: many where those of the lobe escape
+};
+PilotFindings pilotEmission(LightTracerInput input, ThreadPool& pool);
+inline constexpr float kPilotDiffuseAimShare = 0.5F;
 
 // Paths [begin, end) of the emission.
 LightPaths traceLightPaths(const LightTracerInput& input, uint64_t begin, uint64_t end);

@@ -14,8 +14,8 @@ struct DiffuseAim::Parts {
     float aimed = 0;  // sum of the probabilities
 };
 
-DiffuseAim::DiffuseAim(const Scene& scene, bool on) {
-    if (!on || scene.casters().size() > kMostCasters) return;
+DiffuseAim::DiffuseAim(const Scene& scene, float aimedShare) : aimedShare_(aimedShare) {
+    if (!(aimedShare > 0) || scene.casters().size() > kMostCasters) return;
     for (const Caster& caster : scene.casters()) casters_.push_back(caster.bounds);
 }
 
@@ -31,7 +31,7 @@ DiffuseAim::Parts DiffuseAim::partsAt(const Vertex& v) const {
     if (!(total > 0)) return parts;
     for (size_t i = 0; i < casters_.size(); ++i) {
         float& p = parts.probability[i];
-        p = parts.cone[i].everything ? 0 : p * (kAimedShare / total);
+        p = parts.cone[i].everything ? 0 : p * (aimedShare_ / total);
         parts.aimed += p;
     }
     return parts;
@@ -52,8 +52,9 @@ bool DiffuseAim::sample(const Vertex& v, const DiffuseBsdf& bsdf, float uChoice,
         if (uChoice < parts.probability[chosen]) break;
         uChoice -= parts.probability[chosen];
     }
+    out.aimed = chosen < casters_.size();
     if (!bsdf.sample(v.wo, u, out.sample)) return false;
-    if (chosen < casters_.size()) {
+    if (out.aimed) {
         const Cone& cone = parts.cone[chosen];
         out.sample.wi = v.frame.toLocal(Frame(cone.axis).toWorld(squareToCone(u, cone.oneMinusCos)));
         if (out.sample.wi.z * v.wo.z <= 0) return false;

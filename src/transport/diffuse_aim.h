@@ -8,18 +8,17 @@
 namespace lsde {
 
 // Light that lit a floor and then finds a glass is as much a caustic as the lamp's own, but few of a floor's directions
-// lead there. Half of the directions are drawn from the cones of the casters' bounding spheres, half from the surface's
-// own lobe (a defensive mixture, Hesterberg 1995): the weight is lobe density / mixture density, 2 at most.
+// lead there. A share of the directions is drawn from the cones of the casters' bounding spheres, the others from the
+// surface's own lobe (a defensive mixture, Hesterberg 1995): the weight is lobe density / mixture density.
 class DiffuseAim {
   public:
-    static constexpr float kAimedShare = 0.5F;
-
-    // off: everything is drawn from the lobe.
-    DiffuseAim(const Scene& scene, bool on);
+    // aimedShare in [0, 1): 0: everything is drawn from the lobe.
+    DiffuseAim(const Scene& scene, float aimedShare);
 
     struct Direction {
-        BsdfSample sample;  // weight, pdfs and event as of the lobe alone
-        float weight = 1;   // lobe density / mixture density
+        BsdfSample sample;   // weight, pdfs and event as of the lobe alone
+        float weight = 1;    // lobe density / mixture density, at most 1 / (1 - aimedShare)
+        bool aimed = false;  // which part drew it
     };
     // At a Lambertian surface. uChoice chooses the part. False: no light goes on.
     bool sample(const Vertex& v, const DiffuseBsdf& bsdf, float uChoice, Vec2 u, Direction& out) const;
@@ -33,6 +32,7 @@ class DiffuseAim {
     Parts partsAt(const Vertex& v) const;
     float mixturePdf(const Parts& parts, float lobePdf, Vec3 direction) const;
 
+    float aimedShare_;
     std::vector<Sphere> casters_;
 };
 
