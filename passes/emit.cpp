@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "base/hash.h"
-#include "path/ownership.h"
 
 namespace lsde {
 

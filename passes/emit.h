@@ -31,6 +31,8 @@ IndexRange shardRange(uint64_t photons, uint64_t i, uint64_t n);
 class Emission {
   public:
     Emission(const Scene& scene, const EmitSettings& settings, RunContext& run);
+    Emission(const Emission&) = delete;  // the tracer's input refers to the sources
+    Emission& operator=(const Emission&) = delete;
 
     // Traces the paths [next, next + count), in parallel; all are done when it returns, or none are kept (Interrupted).
     void trace(uint64_t next, uint64_t count, RunContext& run);

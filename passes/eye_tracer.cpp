@@ -29,6 +29,9 @@ struct EyePath {
     bool metDiffuse = false;
     bool endsAtDiffuse = false;  // the map owns what reaches a diffuse lobe of this vertex, but for direct light
     float bsdfSamples = 1;       // directions sampled at the last non-delta vertex, for MIS
+
+    // Nothing goes on from v but a look for emitters.
+    bool endsAt(const Vertex& v) const { return endsAtDiffuse && std::holds_alternative<DiffuseBsdf>(v.bsdf); }
 };
 
 struct EyeScratch {
@@ -114,8 +117,7 @@ void EyeTracer::follow(EyePath& path, EyeScratch& scratch) const {
         if (settings_.maxDepth > 0 && path.depth >= settings_.maxDepth) return;
         if (hasDiffuseLobe(v.bsdf) || hasGlossyLobe(v.bsdf)) {
             path.endsAtDiffuse = indirectFromMap(v);
-            const bool ends = path.endsAtDiffuse && std::holds_alternative<DiffuseBsdf>(v.bsdf);
-            path.bsdfSamples = ends ? lights_.bsdfSamples(v) : 1;
+            path.bsdfSamples = path.endsAt(v) ? lights_.bsdfSamples(v) : 1;
             addDirect(v, path, scratch);
             if (photons_ != nullptr) addPhotons(v, path, scratch);
         }
@@ -206,7 +208,7 @@ void EyeTracer::addPhotons(const Vertex& v, const EyePath& path, EyeScratch& scr
     };
     if (layers_.causticCounts(diffuseMask) || layers_.causticCounts(glossyMask))
         add(photons_->caustic(), photons_->caustic().gather(query, v.bsdf, v.frame, v.wo, scratch.gather));
-    if (!path.endsAtDiffuse || !diffuse || !layers_.indirectCounts(diffuseMask)) return;
+    if (!path.endsAtDiffuse || !layers_.indirectCounts(diffuseMask)) return;
     query.glossyFromAll = query.glossyFromFlagged = false;
     add(*photons_->indirect(), photons_->indirect()->gather(query, v.bsdf, v.frame, v.wo, scratch.gather));
 }
@@ -256,8 +258,7 @@ bool EyeTracer::split(const Vertex& v, EyePath& path, EyeScratch& scratch) const
 bool EyeTracer::bounce(const Vertex& v, EyePath& path, EyeScratch& scratch) const {
     const float uLobe = path.sampler.next();
     const Vec2 u = path.sampler.next2D();
-    const bool ends = path.endsAtDiffuse && std::holds_alternative<DiffuseBsdf>(v.bsdf);
-    const int branches = path.mayBranch && !ends ? settings_.indirectBranches : 1;
+    const int branches = path.mayBranch && !path.endsAt(v) ? settings_.indirectBranches : 1;
     path.mayBranch = false;
     path.state.throughput /= static_cast<float>(branches);
     BsdfSample sample;

@@ -18,9 +18,9 @@ const LayerRequest kBuiltIn[] = {
 
 const char* kReserved[] = {"albedo", "normal", "depth", "unclassified"};
 
-// States that can be reached from those given by one event or more.
-uint64_t statesAfter(const PathExpr& e, uint64_t from, std::initializer_list<Event> events) {
-    uint64_t reached = 0, frontier = from;
+// States that can be reached from the start by one event or more of those given.
+uint64_t statesAfter(const PathExpr& e, std::initializer_list<Event> events) {
+    uint64_t reached = 0, frontier = 1;  // the start
     while (frontier != 0) {
         uint64_t next = 0;
         for (int s = 0; s < e.states(); ++s) {
@@ -32,8 +32,6 @@ uint64_t statesAfter(const PathExpr& e, uint64_t from, std::initializer_list<Eve
     }
     return reached;
 }
-
-constexpr uint64_t kStart = 1;  // after L
 
 }  // namespace
 
@@ -64,8 +62,8 @@ RenderLayers::RenderLayers(const std::vector<LayerRequest>& requests, const std:
         only_ = static_cast<int>(layers.size());
         layers.push_back({kOnlyLayer, PathExpr(*only)});
         const PathExpr& e = layers.back().expression;
-        causticStates_ = statesAfter(e, kStart, {Event::Specular, Event::Glossy});
-        indirectStates_ = statesAfter(e, kStart, {Event::Diffuse, Event::Specular, Event::Glossy});
+        causticStates_ = statesAfter(e, {Event::Specular, Event::Glossy});
+        indirectStates_ = statesAfter(e, {Event::Diffuse, Event::Specular, Event::Glossy});
     }
     filter_ = PathFilter(std::move(layers));
 }

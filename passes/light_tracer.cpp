@@ -123,9 +123,10 @@ class LightTracer {
     // meant to carry less.
     void scatterFairly(const Vertex& v, const DiffuseBsdf& lambert, LightPath& path) {
         const Rgb arriving = path.state.throughput;
-        const float copies = maxComponent(arriving * lambert.albedo) / (in_.fairPower * path.aimWeight);
-        const auto count = static_cast<uint32_t>(std::min(copies, kMostCopies) + path.sampler.next());
-        const Rgb each = arriving / std::min(copies, kMostCopies);
+        const float fair = maxComponent(arriving * lambert.albedo) / (in_.fairPower * path.aimWeight);
+        const float copies = std::min(fair, kMostCopies);
+        const auto count = static_cast<uint32_t>(copies + path.sampler.next());
+        const Rgb each = arriving / copies;
         enter(LedgerColumn::Roulette, arriving);
         ++path.depth;
         for (uint32_t i = 0; i < count; ++i) {
@@ -218,12 +219,11 @@ std::string_view name(Store store) {
     return kNames[static_cast<size_t>(store)];
 }
 
-// Rays of light that met a D, for each other ray: as its flux is to that of caustics, within bounds.
-constexpr double kLeastRaysAfterDiffuse = 0.8, kMostRaysAfterDiffuse = 2;
-
 PilotFindings pilotEmission(LightTracerInput input, ThreadPool& pool) {
     constexpr uint64_t kPaths = 8192, kPathsPerChunk = 512;
     constexpr float kLeastAimed = 0.25F, kMostAimed = 0.9F;
+    // Rays of light that met a D, for each other ray: as its flux is to that of caustics, within bounds.
+    constexpr double kLeastRaysAfterDiffuse = 0.8, kMostRaysAfterDiffuse = 2;
     input.fairPower = input.sources.fairPower();
     if (input.store == Store::Caustic) return {input.fairPower, kPilotDiffuseAimShare};
     input.stage = Stage::EmissionPilot;

@@ -70,7 +70,7 @@ SourcedMap mapByCount(const Scene& scene, const MapRequest& request, RunContext&
 }
 
 PhotonMap mapByTime(const Scene& scene, const EmitSettings& emit, const Clock& clock, double seconds, RunContext& run) {
-    constexpr double kBuildSeconds = 0.5e-6;  // a photon: tree, layout, and what is precomputed at indirect ones
+    constexpr double kBuildSeconds = 0.5e-6;  // a photon: tree and layout
     Emission emission(scene, emit, run);
     const double start = clock.used();
     uint64_t next = 0;

@@ -179,7 +179,7 @@ class Render {
     void onePass() {
         PhotonMap photonMap;
         std::optional<PhotonGather> gather;
-        if (method_.usesPhotons && (layers_.wantsCaustic() || layers_.wantsIndirect())) {
+        if (method_.usesPhotons && (layers_.wantsCaustic() || indirectFromMap())) {
             photonMap = map();
             note(photonMap);
             if (!noCaustics_.empty()) run_.warn(noCaustics_);

@@ -28,8 +28,8 @@ uint16_t numberOf(const State& state, std::vector<State>& table) {
 // Codes seen lately and their groups: most photons of a map have one of a few paths.
 class Recent {
   public:
-    uint16_t* find(PathCode code) {
-        Entry& e = entries_[slot(code)];
+    const uint16_t* find(PathCode code) const {
+        const Entry& e = entries_[slot(code)];
         return e.used && e.code == code ? &e.group : nullptr;
     }
     void put(PathCode code, uint16_t group) { entries_[slot(code)] = {code, group, true}; }

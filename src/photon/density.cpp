@@ -16,7 +16,10 @@ constexpr float kSameSurface = 0.69F;
 
 class PhotonFilter {
   public:
-    explicit PhotonFilter(const DensityQuery& query) : query_(query), slack_(surfaceEpsilon(query.point.position, 0)) {}
+    explicit PhotonFilter(const DensityQuery& query)
+        : query_(query),
+          slack_(surfaceEpsilon(query.point.position, 0)),
+          mask_(static_cast<uint16_t>(query.requiredFlags | kLandedOnFront)) {}
 
     bool accepts(const PhotonPayload& p) {
         if (p.normal != lastNormal_) lookAt(p.normal);
@@ -34,7 +37,6 @@ class PhotonFilter {
     void lookAt(uint16_t packed) {
         lastNormal_ = packed;
         const Vec3 normal = unpackNormal(packed);
-        mask_ = static_cast<uint16_t>(query_.requiredFlags | kLandedOnFront);
         const bool front = glm::dot(normal, query_.sideNormal) > 0;
         wanted_ = static_cast<uint16_t>(query_.requiredFlags | (front ? kLandedOnFront : 0));
         if (!(glm::dot(normal, query_.point.ng) > kSameSurface)) wanted_ = kNever;
@@ -44,8 +46,9 @@ class PhotonFilter {
 
     const DensityQuery& query_;
     float slack_;                // m
+    uint16_t mask_;              // flags that matter
+    uint16_t wanted_ = kNever;   // and their values, for the last normal
     uint32_t lastNormal_ = ~0U;  // none
-    uint16_t mask_ = 0, wanted_ = kNever;
 };
 
 // Above the last radius by this much, a search next to it rarely falls short (least time on caustics and walls, where

@@ -1,5 +1,6 @@
 #include "photon/irradiance_cache.h"
 
+#include <array>
 #include <bit>
 
 #include "base/hash.h"
@@ -12,6 +13,9 @@ enum State : uint8_t { kUnknown, kInTheMaking, kKnown };
 
 // Cosine of the angle between normals up to which one place's irradiance says something of the other's.
 constexpr float kSameDirection = 0.95F;
+
+// Lengths of the runs that have a record, in blocks.
+constexpr std::array<uint32_t, 3> kBlocksPerRecord = {16, 4, 1};
 
 // A record stands for its run if its disc holds as many photons as this many runs.
 constexpr uint32_t kRunsInDisc = 8;
@@ -33,13 +37,16 @@ Vec2 hashedDiscPoint(Vec3 p) {
 }  // namespace
 
 IrradianceCache::IrradianceCache(const PhotonSource& source, const IrradianceRule& rule)
-    : source_(source), photons_(source.photons()), rule_(rule) {
-    for (size_t i = 0; i < levels_.size(); ++i) {
-        const size_t runs = (photons_.blocks.size() + kBlocksPerRecord[i] - 1) / kBlocksPerRecord[i];
-        Level& level = levels_[i];
-        level.photonsPerRecord = kBlocksPerRecord[i] * kBlockSize;
+    : source_(source), photons_(source.photons()), smoothCount_(rule.smoothCount) {
+    for (const uint32_t blocks : kBlocksPerRecord) {
+        const uint32_t photonsPerRecord = blocks * kBlockSize;
+        // Longer runs than the rule's largest disc allows would never be used.
+        if (blocks > 1 && rule.bandwidth.mostCount < kRunsInDisc * photonsPerRecord) continue;
+        const size_t runs = (photons_.blocks.size() + blocks - 1) / blocks;
+        Level& level = levels_.emplace_back();
+        level.photonsPerRecord = photonsPerRecord;
         level.rule = rule.bandwidth;
-        level.rule.mostCount = std::min(level.rule.mostCount, mostCountOf(level.photonsPerRecord));
+        level.rule.mostCount = std::min(level.rule.mostCount, mostCountOf(photonsPerRecord));
         level.states = std::vector<std::atomic<uint8_t>>(runs);
         level.bandwidths = std::make_unique_for_overwrite<Bandwidth[]>(runs);
         level.irradiance = std::make_unique_for_overwrite<Rgb[]>(runs * (source.groupCount + 1));
@@ -50,7 +57,7 @@ void IrradianceCache::make(uint32_t photon, const BandwidthRule& rule, Bandwidth
                            BandwidthScratch& scratch) const {
     bandwidth = consistentBandwidth(source_, photon, rule, scratch);
     std::fill(irradiance.begin(), irradiance.end(), Rgb(0));
-    if (bandwidth.count < rule_.smoothCount) return;
+    if (bandwidth.count < smoothCount_) return;
     const float radiusSquared = square(bandwidth.radius);
     for (const DensityScratch::Candidate& c : scratch.density.accepted) {
         const uint16_t group = source_.groups[c.index];
@@ -94,23 +101,20 @@ bool IrradianceCache::sameSurface(const DensityQuery& query, uint32_t photon, Ba
     return scratch.surface.whole() || !scratch.surface.hides(there.point.position);
 }
 
-bool IrradianceCache::nearest(const DensityQuery& query, Vec3 p, Record& record, uint32_t& photonsPerRecord,
-                              BandwidthScratch& scratch) {
+bool IrradianceCache::nearest(const DensityQuery& query, Vec3 p, Record& record, BandwidthScratch& scratch) {
     const size_t block = nearestBlock(photons_, p);
-    for (size_t i = 0; i < levels_.size(); ++i) {
-        Level& level = levels_[i];
-        const bool last = i + 1 == levels_.size();
-        if (!last && level.rule.mostCount < kRunsInDisc * level.photonsPerRecord) continue;
-        const size_t run = block / kBlocksPerRecord[i];
+    for (Level& level : levels_) {
+        const size_t run = block * kBlockSize / level.photonsPerRecord;
         const uint64_t first = run * level.photonsPerRecord;
         const uint64_t end = std::min(first + level.photonsPerRecord, photons_.count);
         record.photon = static_cast<uint32_t>((first + end) / 2);
         if (!sameSurface(query, record.photon, scratch)) continue;
         recordOf(level, run, record, scratch);
-        photonsPerRecord = level.photonsPerRecord;
+        record.photonsPerRecord = level.photonsPerRecord;
         const bool near =
             glm::length(query.point.position - photons_.position(record.photon)) < kNear * record.bandwidth.radius;
-        if (last || (near && record.bandwidth.count >= kRunsInDisc * photonsPerRecord)) return true;
+        const bool enough = near && record.bandwidth.count >= kRunsInDisc * level.photonsPerRecord;
+        if (enough || &level == &levels_.back()) return true;
     }
     return false;
 }
@@ -120,21 +124,20 @@ CachedLight IrradianceCache::at(const DensityQuery& query, bool wantIrradiance, 
     if (photons_.count == 0) return light;
     const Vec3 p = query.point.position;
     Record record;
-    uint32_t photonsPerRecord = 0;
-    if (!nearest(query, p, record, photonsPerRecord, scratch)) return light;
+    if (!nearest(query, p, record, scratch)) return light;
     const Bandwidth& there = record.bandwidth;
     light.bandwidth.radius = std::max(0.0F, there.radius - glm::length(p - photons_.position(record.photon)));
     light.bandwidth.count =
         static_cast<uint32_t>(static_cast<float>(there.count) * square(light.bandwidth.radius / there.radius));
-    if (!wantIrradiance || light.bandwidth.count < rule_.smoothCount || light.bandwidth.radius < query.minRadius)
+    if (!wantIrradiance || light.bandwidth.count < smoothCount_ || light.bandwidth.radius < query.minRadius)
         return light;
     const float spacing =
-        there.radius * std::sqrt(static_cast<float>(photonsPerRecord) / static_cast<float>(there.count + 1));
+        there.radius * std::sqrt(static_cast<float>(record.photonsPerRecord) / static_cast<float>(there.count + 1));
     const Vec2 offset = std::min(spacing, 0.5F * there.radius) * hashedDiscPoint(p);
     const Frame frame(query.point.ng);
     Record other;
-    if (nearest(query, p + offset.x * frame.x + offset.y * frame.y, other, photonsPerRecord, scratch) &&
-        other.bandwidth.count >= rule_.smoothCount &&
+    if (nearest(query, p + offset.x * frame.x + offset.y * frame.y, other, scratch) &&
+        other.bandwidth.count >= smoothCount_ &&
         glm::length(p - photons_.position(other.photon)) < 1.5F * kNear * other.bandwidth.radius)
         light.irradiance = other.irradiance;
     return light;

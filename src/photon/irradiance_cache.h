@@ -2,7 +2,6 @@
 // the irradiance (Christensen 1999) where that is far.
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <memory>
 #include <vector>
@@ -35,9 +34,9 @@ class IrradianceCache {
     CachedLight at(const DensityQuery& query, bool wantIrradiance, BandwidthScratch& scratch);
 
   private:
-    static constexpr std::array<uint32_t, 3> kBlocksPerRecord = {16, 4, 1};
     struct Record {
         uint32_t photon = 0;
+        uint32_t photonsPerRecord = 0;  // of its level
         Bandwidth bandwidth;
         std::span<const Rgb> irradiance;
     };
@@ -50,8 +49,7 @@ class IrradianceCache {
         std::unique_ptr<Rgb[]> irradiance;  // of run i and group g: [i * (groups + 1) + g]
     };
     // False: none of the query's surface is near p.
-    bool nearest(const DensityQuery& query, Vec3 p, Record& record, uint32_t& photonsPerRecord,
-                 BandwidthScratch& scratch);
+    bool nearest(const DensityQuery& query, Vec3 p, Record& record, BandwidthScratch& scratch);
     bool sameSurface(const DensityQuery& query, uint32_t photon, BandwidthScratch& scratch) const;
     void recordOf(Level& level, size_t run, Record& record, BandwidthScratch& scratch);
     void make(uint32_t photon, const BandwidthRule& rule, Bandwidth& bandwidth, std::span<Rgb> irradiance,
@@ -59,8 +57,8 @@ class IrradianceCache {
 
     PhotonSource source_;
     PhotonTreeView photons_;
-    IrradianceRule rule_;
-    std::array<Level, kBlocksPerRecord.size()> levels_;
+    uint32_t smoothCount_;
+    std::vector<Level> levels_;  // the longest runs first, one block last
 };
 
 }  // namespace lsde

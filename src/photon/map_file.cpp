@@ -16,8 +16,6 @@ namespace {
 constexpr ContainerKind kKind{"photons", kMapVersion};
 constexpr size_t kGrain = 1024;  // blocks or nodes a task
 
-// Known to this version; a record with others was not made by it.
-
 struct SectionNames {
     explicit SectionNames(PhotonClass c)
         : blocks(std::string(name(c)) + ".blocks"),

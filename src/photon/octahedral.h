@@ -25,14 +25,13 @@ struct Octahedral {
                                                                          << kBits;
     }
 
-    // A vector in the direction packed, of length 0.57 to 1; any bits give one.
-    static Vec3 unpackUnnormalised(uint32_t bits) {
+    // Any bits give a direction.
+    static Vec3 unpack(uint32_t bits) {
         const float x = coordinate(bits), y = coordinate(bits >> kBits);
         const float z = 1 - std::fabs(x) - std::fabs(y);
         const float fold = std::max(-z, 0.0F);
-        return {x - std::copysign(fold, x), y - std::copysign(fold, y), z};
+        return glm::normalize(Vec3(x - std::copysign(fold, x), y - std::copysign(fold, y), z));
     }
-    static Vec3 unpack(uint32_t bits) { return glm::normalize(unpackUnnormalised(bits)); }
 
   private:
     static uint32_t quantised(float x) { return static_cast<uint32_t>(std::lround(x * kSteps) + kBias) & kMask; }

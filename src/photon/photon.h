@@ -28,6 +28,7 @@ enum PhotonFlag : uint16_t {
     kGlossyGather = 2,    // L B+ only: causticAtGlossy
     kLandedOnFront = 4,   // direction is on the side of the normal; set by pack()
 };
+// Known to this version; a record with others was not made by it.
 inline constexpr uint16_t kAllPhotonFlags = kFromDeltaLight | kGlossyGather | kLandedOnFront;
 
 // Everything but the position: 24 bytes.

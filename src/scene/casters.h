@@ -13,9 +13,12 @@ struct Caster {
     Sphere bounds;
 };
 
+// Of a scene: aiming looks at every one of them for every path.
+inline constexpr size_t kMaxCasters = 16;
+
 Sphere boundingSphereOf(const Mesh& mesh);
 
-// At most `limit` spheres around groups of casters, since aiming looks at every sphere for every path: the largest
+// At most `limit` spheres around groups of casters: the largest
 // group is halved across its longest side until there are enough.
 std::vector<Caster> groupCasters(std::vector<Sphere> spheres, size_t limit);
 

@@ -28,8 +28,6 @@ bool hasNarrowLobe(const Material& m) {
     return glossy && narrow;
 }
 
-constexpr size_t kMaxCasters = 16;
-
 }  // namespace
 
 Scene::Scene(SceneDescription description)

@@ -3,19 +3,20 @@
 #include <array>
 
 #include "sampling/warp.h"
+#include "scene/casters.h"
 #include "transport/cone.h"
 
 namespace lsde {
 
 // The cones as a point sees them, and the probability of each. What a sphere around the point is aimed at by the lobe.
 struct DiffuseAim::Parts {
-    std::array<Cone, kMostCasters> cone;
-    std::array<float, kMostCasters> probability{};
+    std::array<Cone, kMaxCasters> cone;
+    std::array<float, kMaxCasters> probability{};
     float aimed = 0;  // sum of the probabilities
 };
 
 DiffuseAim::DiffuseAim(const Scene& scene, float aimedShare) : aimedShare_(aimedShare) {
-    if (!(aimedShare > 0) || scene.casters().size() > kMostCasters) return;
+    if (!(aimedShare > 0)) return;
     for (const Caster& caster : scene.casters()) casters_.push_back(caster.bounds);
 }
 

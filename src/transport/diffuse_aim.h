@@ -26,8 +26,6 @@ class DiffuseAim {
     float pdf(const Vertex& v, const DiffuseBsdf& bsdf, Vec3 direction) const;
 
   private:
-    // More than these are not worth their cost at every bounce.
-    static constexpr size_t kMostCasters = 16;
     struct Parts;
     Parts partsAt(const Vertex& v) const;
     float mixturePdf(const Parts& parts, float lobePdf, Vec3 direction) const;

@@ -47,7 +47,7 @@ struct SampledLight {
     int straightPassages = 0;
 };
 
-SampledLight sampleAt(const Scene& scene, const Vertex& v, int samples, DirectLightQuery query = {true, true, false}) {
+SampledLight sampleAt(const Scene& scene, const Vertex& v, int samples, DirectLightQuery query = {true, true, 0}) {
     const LightSampler lights(scene, test::allLights(scene));
     test::Random random(11);
     WalkScratch scratch;
@@ -234,7 +234,7 @@ TEST_CASE("sampled lights and sampled directions, weighted, add up to sampled li
             for (int i = 0; i < 200'000; ++i) {
                 float uLight = random.uniform();
                 const DirectLight a =
-                    sampleDirectLight(*scene, lights, v, {true, true, false}, uLight, random.uniform2D(), scratch);
+                    sampleDirectLight(*scene, lights, v, {true, true, 0}, uLight, random.uniform2D(), scratch);
                 alone.add(a.diffuse.x + a.glossy.x);
                 uLight = random.uniform();
                 const DirectLight w = sampleDirectLight(*scene, lights, v, {}, uLight, random.uniform2D(), scratch);
