@@ -67,3 +67,52 @@ TEST_CASE("without noise every pixel gets the same") {
         for (size_t i = 0; i < kPixels; ++i) CHECK(plan.count(i, 37) == 37);
     }
 }
+
+// Not yet so: rates are bounded on both sides, and what the bounds leave over is not given out. When it is the mark
+// goes.
+TEST_CASE("the samples asked for are given however few pixels are noisy" * doctest::should_fail()) {
+    for (const int side : {1, 3, 8, 20}) {
+        CAPTURE(side);
+        std::vector<SampleStatistics> statistics(kPixels, even(1));
+        for (int y = 5; y < 5 + side; ++y)
+            for (int x = 5; x < 5 + side; ++x) statistics[at(x, y)] = noisy(1);
+        SamplePlan plan(kWidth, kHeight);
+        plan.adapt(statistics);
+        double total = 0;
+        for (size_t i = 0; i < kPixels; ++i) total += static_cast<double>(plan.count(i, 64));
+        CHECK(total / kPixels == doctest::Approx(64).epsilon(0.01));
+    }
+}
+
+TEST_CASE("among the others a pixel's own values move no share but its neighbours'") {
+    std::vector<SampleStatistics> statistics = halfNoisy();
+    SamplePlan before(kWidth, kHeight), after(kWidth, kHeight);
+    before.adapt(statistics);
+    statistics[at(15, 15)].sumOfSquares *= 3;
+    after.adapt(statistics);
+    const auto rate = [](const SamplePlan& plan, int x, int y) {
+        return static_cast<double>(plan.count(at(x, y), 1'000'000)) / 1e6;
+    };
+    // All rates share a factor that keeps their mean; what is left is the pixel's own.
+    const double factor = rate(after, 12, 5) / rate(before, 12, 5);
+    CHECK(rate(after, 15, 15) / rate(before, 15, 15) == doctest::Approx(factor).epsilon(1e-4));
+    for (const auto& [x, y] : {std::pair(14, 14), std::pair(15, 14), std::pair(16, 15), std::pair(14, 16)})
+        CHECK(rate(after, x, y) / rate(before, x, y) > 1.05 * factor);
+    CHECK(rate(after, 17, 15) / rate(before, 17, 15) == doctest::Approx(factor).epsilon(1e-4));
+}
+
+TEST_CASE("samples go by the standard deviation, of equal means") {
+    const auto withSigma = [](float sigma) {
+        SampleStatistics s;
+        for (uint64_t i = 0; i < SamplePlan::kUniform; ++i) s.add(i % 2 == 0 ? 1 - sigma : 1 + sigma);
+        return s;
+    };
+    std::vector<SampleStatistics> statistics(kPixels, withSigma(0.25F));
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 20; x < kWidth; ++x) statistics[at(x, y)] = withSigma(0.5F);
+    SamplePlan plan(kWidth, kHeight);
+    plan.adapt(statistics);
+    const auto left = static_cast<double>(plan.count(at(5, 9), 100'000) - SamplePlan::kUniform);
+    const auto right = static_cast<double>(plan.count(at(35, 9), 100'000) - SamplePlan::kUniform);
+    CHECK(right / left == doctest::Approx(2).epsilon(0.001));
+}

@@ -52,3 +52,32 @@ TEST_CASE("the numbers of groups do not depend on the threads") {
     const PathGroups a(filter, 300'000, codeOf, one), b(filter, 300'000, codeOf, two);
     CHECK(std::equal(a.all().begin(), a.all().end(), b.all().begin(), b.all().end()));
 }
+
+TEST_CASE("groups are numbered by their first paths, and all overflowed paths share one") {
+    const PathFilter filter = filterOf({"LS+DE", "L[DS]*DS*E", "LG.*E"});
+    // Every 30,000 paths another kind of them sets in, the last ones overflowed: chunks begin with different groups.
+    constexpr size_t kCount = 300'000, kKinds = 10;
+    const auto kindOf = [](size_t i) { return (i / 30'000 + i % 3 * (i / 60'000)) % kKinds; };
+    const auto code = [&](size_t i) -> std::optional<PathCode> {
+        const size_t kind = kindOf(i);
+        if (kind == 0) return {};
+        PathCode c;
+        if (kind >= 8)  // two different codes without state
+            for (int n = 0; n <= PathCode::kMaxEvents; ++n) c.append(kind == 8 ? Event::Specular : Event::Diffuse);
+        else
+            for (size_t n = kind; n > 0; n /= 2) c.append(n % 2 == 0 ? Event::Diffuse : Event::Specular);
+        return c;
+    };
+    ThreadPool pool(2);
+    const PathGroups groups(filter, kCount, code, pool);
+    uint16_t next = 0;
+    for (size_t i = 0; i < kCount; ++i) {
+        if (groups.of(i) == PathGroups::kNone) continue;
+        REQUIRE(groups.of(i) <= next);
+        if (groups.of(i) == next) ++next;
+    }
+    CHECK(next == groups.size());
+    size_t stateless = 0;
+    for (size_t g = 0; g < groups.size(); ++g) stateless += groups.state(g) ? 0 : 1;
+    CHECK(stateless == 1);
+}

@@ -2,42 +2,17 @@
 
 #include <doctest/doctest.h>
 
-#include "photon/photons.h"
+#include "photon/square.h"
+#include "support/statistics.h"
 
 using namespace lsde;
-using test::photonAt;
 using test::Random;
-using test::treeOf;
+using test::Square;
 
 namespace {
 
-// Photons of even power on the square [-1, 1]^2 of the plane z = 0, `density` of them a m2 where x < 0 and as many
-// times `contrast` where x > 0; every other one in group 1.
-struct Square {
-    PhotonTree tree;
-    AnyIndex index;
-    SurfaceExtent extent;
-    std::vector<uint16_t> groups;
-
-    Square(uint32_t seed, float density, float contrast)
-        : tree(make(seed, density, contrast)), index(KdIndex(view(tree))) {
-        for (size_t i = 0; i < tree.count; ++i) groups.push_back(tree.payload[i].light);
-    }
-    static PhotonTree make(uint32_t seed, float density, float contrast) {
-        Random random(seed);
-        std::vector<Photon> photons;
-        for (const float side : {-1.0F, 1.0F})
-            for (uint32_t n = random.poisson(2.0 * density * (side > 0 ? contrast : 1)); n-- > 0;) {
-                Photon p = photonAt({side * random.uniform(), random.between(-1, 1), 0}, random.bits());
-                p.light = static_cast<uint16_t>(photons.size() % 2);
-                photons.push_back(p);
-            }
-        return treeOf(photons);
-    }
-    PhotonSource source() const { return {index, extent, groups, 2, 1, 0.5F}; }
-};
-
 constexpr IrradianceRule kRule{{20, 1000, 2.5F}, 50};
+constexpr IrradianceRule kManyPhotons{{20, 1000, 2.5F}, 400};
 constexpr IrradianceRule kFewPhotons{{20, 100, 2.5F}, 20};
 
 DensityQuery queryFrom(Vec3 position, Vec3 side = {0, 0, 1}) {
@@ -50,40 +25,6 @@ DensityQuery queryFrom(Vec3 position, Vec3 side = {0, 0, 1}) {
 }
 
 }  // namespace
-
-TEST_CASE("where light is even the bandwidth grows as far as it may") {
-    const Square square(1, 20'000, 1);
-    BandwidthScratch scratch;
-    Random random(2);
-    int wide = 0;
-    for (int i = 0; i < 200; ++i) {
-        const auto photon = static_cast<uint32_t>(random.uniform() * static_cast<float>(square.tree.count));
-        const Vec3 p = square.index.index() == 0 ? view(square.tree).position(photon) : Vec3(0);
-        if (std::max(std::fabs(p.x), std::fabs(p.y)) > 0.8F) continue;
-        const Bandwidth b = consistentBandwidth(square.source(), photon, kRule.bandwidth, scratch);
-        CHECK(b.count <= 1200);
-        CHECK(b.count == doctest::Approx(20'000 * kPi * b.radius * b.radius).epsilon(0.5));
-        wide += b.count >= 450 ? 1 : 0;
-    }
-    CHECK(wide > 90);
-}
-
-TEST_CASE("a bandwidth ends at an edge, on its dark side as well") {
-    const Square square(3, 2000, 50);
-    BandwidthScratch scratch;
-    double beyond = 0;
-    int dark = 0;
-    for (uint32_t i = 0; i < square.tree.count; ++i) {
-        const Vec3 p = view(square.tree).position(i);
-        if (p.x > 0 || p.x < -0.2F || std::fabs(p.y) > 0.7F) continue;
-        const Bandwidth b = consistentBandwidth(square.source(), i, kRule.bandwidth, scratch);
-        beyond += std::max(0.0F, b.radius + p.x);
-        ++dark;
-    }
-    MESSAGE("beyond the edge on average: ", beyond / dark, " m");
-    // The least disc holds 20 photons, on the dark side within 6 cm, and there reaches a little into the bright one.
-    CHECK(beyond / dark < 0.002);
-}
 
 TEST_CASE("cached irradiance has no bias where light is even, and keeps groups apart") {
     double sum = 0, first = 0;
@@ -129,6 +70,86 @@ TEST_CASE("the cache answers for its own side, medium and direction only") {
     CHECK(cache.at(query, false, scratch).bandwidth.count > 50);
 }
 
+TEST_CASE("where many photons are in a disc the cached irradiance is the light's, within its error") {
+    test::Mean ratio;
+    for (uint32_t seed = 1; seed <= 40; ++seed) {
+        const Square square(100 + seed, 5000, 1);
+        IrradianceCache cache(square.source(), kManyPhotons);
+        BandwidthScratch scratch;
+        Random random(seed);
+        test::Mean here;
+        for (int i = 0; i < 500; ++i) {
+            const Vec3 p(random.between(-0.5F, 0.5F), random.between(-0.5F, 0.5F), 0);
+            const CachedLight light = cache.at(queryFrom(p), true, scratch);
+            if (!light.irradiance.empty()) here.add(static_cast<double>(light.irradiance.back().y) / 10'000);
+        }
+        ratio.add(here.value());
+    }
+    MESSAGE("ratio ", ratio.value(), " +- ", ratio.standardError());
+    CHECK(ratio.standardError() < 0.003);
+    // Measured on 150 other maps: 0.24% +- 0.09% too low with 50 photons required, perhaps because sparse runs of
+    // blocks are larger and so asked more often.
+    CHECK(std::fabs(ratio.value() - 1) < 0.004 + 4 * ratio.standardError());
+}
+
+// Not yet so: some bandwidths reach over the edge (bandwidth_test.cpp). When that is mended the mark goes.
+TEST_CASE("beside an edge the cached irradiance is that of its own side" * doctest::should_fail()) {
+    // Density 2000 and 100000 photons a m2. 3 cm from the edge even discs of 50 photons of the bright side end.
+    double darkMost = 0;
+    test::Mean dark, bright;
+    for (uint32_t seed = 1; seed <= 8; ++seed) {
+        const Square square(seed, 2000, 50);
+        IrradianceCache cache(square.source(), kRule);
+        BandwidthScratch scratch;
+        Random random(seed);
+        for (int i = 0; i < 4000; ++i) {
+            const float away = random.between(0.03F, 0.2F);
+            for (const float side : {-away, away}) {
+                const CachedLight light = cache.at(queryFrom({side, random.between(-0.6F, 0.6F), 0}), true, scratch);
+                if (light.irradiance.empty()) continue;
+                const double there = static_cast<double>(light.irradiance.back().y) / (side < 0 ? 4000 : 200'000);
+                if (side < 0) darkMost = std::max(darkMost, there);
+                (side < 0 ? dark : bright).add(there);
+            }
+        }
+    }
+    MESSAGE("dark side: mean ", dark.value(), ", at most ", darkMost, "; bright side: mean ", bright.value());
+    CHECK(bright.value() == doctest::Approx(1).epsilon(0.02));
+    CHECK(dark.value() == doctest::Approx(1).epsilon(0.05));
+    CHECK(darkMost < 2);  // 50 photons: a standard error of 16%
+}
+
+TEST_CASE("a group's irradiance is its own photons', and those of no group leave nothing") {
+    const Square square(13, 5000, 1);
+    IrradianceCache both(square.source(2), kRule), one(square.source(1), kRule);
+    BandwidthScratch scratch;
+    Random random(14);
+    test::Mean first, alone;
+    for (int i = 0; i < 500; ++i) {
+        const Vec3 p(random.between(-0.6F, 0.6F), random.between(-0.6F, 0.6F), 0);
+        const CachedLight a = both.at(queryFrom(p), true, scratch);
+        if (!a.irradiance.empty()) first.add(static_cast<double>(a.irradiance[0].y));
+        const CachedLight b = one.at(queryFrom(p), true, scratch);
+        if (b.irradiance.empty()) continue;
+        REQUIRE(b.irradiance.size() == 2);
+        REQUIRE(b.irradiance[0] == b.irradiance[1]);
+        alone.add(static_cast<double>(b.irradiance[1].y));
+    }
+    CHECK(first.value() == doctest::Approx(5000).epsilon(0.05));
+    CHECK(alone.value() == doctest::Approx(5000).epsilon(0.05));
+}
+
+TEST_CASE("normals as far apart as a cosine of 0.95 share their irradiance, others do not") {
+    const Square square(15, 5000, 1);
+    IrradianceCache cache(square.source(), kRule);
+    BandwidthScratch scratch;
+    for (const float cosine : {0.96F, 0.94F}) {
+        DensityQuery query = queryFrom({0.1F, 0.1F, 0});
+        query.sideNormal = {std::sqrt(1 - cosine * cosine), 0, cosine};
+        CHECK(cache.at(query, true, scratch).irradiance.empty() == (cosine < 0.95F));
+    }
+}
+
 TEST_CASE("what the cache says depends neither on who asks first nor on the threads") {
     const Square square(7, 5000, 20);
     constexpr size_t kQueries = 4000;
@@ -138,19 +159,20 @@ TEST_CASE("what the cache says depends neither on who asks first nor on the thre
     };
     struct Answer {
         Bandwidth bandwidth;
-        Rgb irradiance{-1};
+        std::vector<Rgb> irradiance;
     };
     const auto ask = [&](int threads, bool backwards) {
         IrradianceCache cache(square.source(), kRule);
-        std::vector<Answer> answers(kQueries);
+        // Each of them twice: halves of the range run at the same time, so that threads meet at records in the making.
+        std::vector<Answer> answers(2 * kQueries);
         ThreadPool pool(threads);
-        pool.forRange(kQueries, 16, [&](size_t begin, size_t end) {
+        pool.forRange(2 * kQueries, 16, [&](size_t begin, size_t end) {
             BandwidthScratch scratch;
             for (size_t i = begin; i < end; ++i) {
-                const size_t at = backwards ? kQueries - 1 - i : i;
-                const CachedLight light = cache.at(queryFrom(position(at)), true, scratch);
+                const size_t at = backwards ? 2 * kQueries - 1 - i : i;
+                const CachedLight light = cache.at(queryFrom(position(at % kQueries)), true, scratch);
                 answers[at].bandwidth = light.bandwidth;
-                if (!light.irradiance.empty()) answers[at].irradiance = light.irradiance[2];
+                answers[at].irradiance.assign(light.irradiance.begin(), light.irradiance.end());
             }
         });
         return answers;
@@ -158,7 +180,7 @@ TEST_CASE("what the cache says depends neither on who asks first nor on the thre
     const std::vector<Answer> one = ask(1, false);
     for (const bool backwards : {false, true}) {
         const std::vector<Answer> two = ask(2, backwards);
-        for (size_t i = 0; i < kQueries; ++i) {
+        for (size_t i = 0; i < two.size(); ++i) {
             REQUIRE(one[i].bandwidth.radius == two[i].bandwidth.radius);
             REQUIRE(one[i].bandwidth.count == two[i].bandwidth.count);
             REQUIRE(one[i].irradiance == two[i].irradiance);

@@ -5,6 +5,8 @@
 #include "sampling/sampler.h"
 #include "support/chi_squared.h"
 #include "support/scenes.h"
+#include "support/statistics.h"
+#include "transport/cone.h"
 
 using namespace lsde;
 using test::SceneBuilder;
@@ -81,4 +83,95 @@ TEST_CASE("the weights of aimed directions carry all the light, and none carries
         }
         CHECK(sum / kSamples == doctest::Approx(1).epsilon(share > 0.5F ? 0.015 : 0.005));
     }
+}
+
+TEST_CASE("the mean weight is 1 on both sides, in a caster's sphere and beside casters below the horizon") {
+    const auto scene = floorWithCasters();
+    const DiffuseAim aim(*scene, 0.5F);
+    for (const bool fromBelow : {false, true})
+        for (const Vec3 p : {Vec3(0.2F, 0, 0.1F), Vec3(-2, 0, 0.1F), Vec3(1, 0.5F, 0), Vec3(0, 9, 0)}) {
+            CAPTURE(fromBelow);
+            CAPTURE(p.x);
+            const Vertex v = floorAt(p, fromBelow);
+            test::Mean weight;
+            for (uint64_t i = 0; i < 100'000; ++i) {
+                Sampler s = Sampler::sequence(i, Stage::Test, 1);
+                DiffuseAim::Direction d;
+                const float uChoice = s.next();
+                // Directions below the horizon carry nothing: the others make up for them.
+                const bool goesOn = aim.sample(v, kGrey, uChoice, s.next2D(), d);
+                weight.add(goesOn ? static_cast<double>(d.weight) : 0);
+                if (goesOn) REQUIRE(d.sample.wi.z * v.wo.z > 0);
+            }
+            CHECK(weight.agrees(1));
+        }
+}
+
+TEST_CASE("more casters than are aimed at one by one are aimed at in groups") {
+    SceneBuilder builder;
+    for (int row = 0; row < 5; ++row)
+        for (int column = 0; column < 8; ++column)
+            builder.add(
+                test::sphere({0.5F * static_cast<float>(column) - 2, 2, 0.5F * static_cast<float>(row) - 1}, 0.2F, 1),
+                test::metal(0));
+    const auto scene = builder.build();
+    REQUIRE(scene->casters().size() == 16);
+    const DiffuseAim aim(*scene, 0.5F);
+    const Vertex v = floorAt({0.3F, 0, 0.1F}, false);
+    test::Mean weight, aimed;
+    for (uint64_t i = 0; i < 50'000; ++i) {
+        Sampler s = Sampler::sequence(i, Stage::Test, 2);
+        DiffuseAim::Direction d;
+        const float uChoice = s.next();
+        const bool goesOn = aim.sample(v, kGrey, uChoice, s.next2D(), d);
+        weight.add(goesOn ? static_cast<double>(d.weight) : 0);
+        aimed.add(d.aimed ? 1 : 0);
+    }
+    CHECK(weight.agrees(1));
+    CHECK(aimed.agrees(0.5));
+}
+
+TEST_CASE("nothing is aimed at a sphere around the point, nor at one below the horizon") {
+    SceneBuilder builder;
+    builder.add(test::sphere({0, 1, 0}, 0.5F, 1), test::metal(0));
+    const auto scene = builder.build();
+    const DiffuseAim aim(*scene, 0.5F);
+    const auto aimedFrom = [&](Vec3 p, bool fromBelow) {
+        const Vertex v = floorAt(p, fromBelow);
+        int aimed = 0;
+        for (uint64_t i = 0; i < 1000; ++i) {
+            Sampler s = Sampler::sequence(1, Stage::Test, i);
+            DiffuseAim::Direction d;
+            const float uChoice = s.next();
+            if (!aim.sample(v, kGrey, uChoice, s.next2D(), d)) d.aimed = true;
+            aimed += d.aimed ? 1 : 0;
+            if (!d.aimed) CHECK(d.weight > 0);
+        }
+        return aimed;
+    };
+    CHECK(aimedFrom({0, 0, 0}, false) == doctest::Approx(500).epsilon(0.01));
+    CHECK(aimedFrom({0, 2, 0}, true) == doctest::Approx(500).epsilon(0.01));
+    CHECK(aimedFrom({0, 0, 0}, true) == 0);
+    CHECK(aimedFrom({0, 2, 0}, false) == 0);
+    CHECK(aimedFrom({0, 1.1F, 0}, false) == 0);
+    CHECK(aimedFrom({0, 1.1F, 0}, true) == 0);
+}
+
+TEST_CASE("a sphere's cone ends at its tangents, wide or narrow") {
+    for (const float radius : {1e-3F, 0.1F, 0.5F, 0.9F, 0.999F}) {
+        CAPTURE(radius);
+        const Cone cone = coneTo({{0, 0, 1}, radius}, Vec3(0));
+        REQUIRE(!cone.everything);
+        const float angle = std::asin(radius);
+        CHECK(within(cone, {std::sin(0.999F * angle), 0, std::cos(0.999F * angle)}));
+        CHECK(!within(cone, {0, std::sin(1.001F * angle), std::cos(1.001F * angle)}));
+        // Of the horizon: turned below it by the half angle the cone is just out of sight.
+        const auto normalAt = [&](float beyond) {
+            const float turned = kPi / 2 + beyond * angle;
+            return Vec3(std::sin(turned), 0, std::cos(turned));
+        };
+        CHECK(cosineShare(cone, normalAt(0.99F)) > 0);
+        CHECK(cosineShare(cone, normalAt(1.01F)) == 0);
+    }
+    CHECK(coneTo({{0, 0, 1}, 1.5F}, Vec3(0)).everything);
 }

@@ -1,0 +1,123 @@
+#include "photon/bandwidth.h"
+
+#include <doctest/doctest.h>
+
+#include "photon/square.h"
+
+using namespace lsde;
+using test::Random;
+using test::Square;
+
+namespace {
+
+constexpr BandwidthRule kRule{20, 1000, 2.5F};
+
+Vec3 positionOf(const Square& square, uint32_t photon) { return view(square.tree).position(photon); }
+
+}  // namespace
+
+TEST_CASE("where light is even the bandwidth grows as far as it may") {
+    const Square square(1, 20'000, 1);
+    BandwidthScratch scratch;
+    Random random(2);
+    int wide = 0;
+    for (int i = 0; i < 200; ++i) {
+        const auto photon = static_cast<uint32_t>(random.uniform() * static_cast<float>(square.tree.count));
+        const Vec3 p = positionOf(square, photon);
+        if (std::max(std::fabs(p.x), std::fabs(p.y)) > 0.8F) continue;
+        const Bandwidth b = consistentBandwidth(square.source(), photon, kRule, scratch);
+        CHECK(b.count <= 1200);
+        CHECK(b.count == doctest::Approx(20'000 * kPi * b.radius * b.radius).epsilon(0.5));
+        wide += b.count >= 450 ? 1 : 0;
+    }
+    CHECK(wide > 90);
+}
+
+TEST_CASE("a bandwidth ends at an edge, on its dark side as well") {
+    const Square square(3, 2000, 50);
+    BandwidthScratch scratch;
+    double beyond = 0;
+    int dark = 0;
+    for (uint32_t i = 0; i < square.tree.count; ++i) {
+        const Vec3 p = positionOf(square, i);
+        if (p.x > 0 || p.x < -0.2F || std::fabs(p.y) > 0.7F) continue;
+        const Bandwidth b = consistentBandwidth(square.source(), i, kRule, scratch);
+        beyond += std::max(0.0F, b.radius + p.x);
+        ++dark;
+    }
+    MESSAGE("beyond the edge on average: ", beyond / dark, " m");
+    // The least disc holds 20 photons, on the dark side within 6 cm, and there reaches a little into the bright one.
+    CHECK(beyond / dark < 0.002);
+}
+
+// Not yet so: on the edge itself a disc is half lit at every radius, and no radius disagrees with another. When it is
+// mended doctest says that the case passes, and the mark goes.
+TEST_CASE("no bandwidth on the dark side reaches far beyond an edge" * doctest::should_fail()) {
+    float most = 0;
+    for (uint32_t seed = 3; seed < 6; ++seed) {
+        const Square square(seed, 2000, 50);
+        BandwidthScratch scratch;
+        for (uint32_t i = 0; i < square.tree.count; ++i) {
+            const Vec3 p = positionOf(square, i);
+            if (p.x > 0 || p.x < -0.2F || std::fabs(p.y) > 0.7F) continue;
+            most = std::max(most, consistentBandwidth(square.source(), i, kRule, scratch).radius + p.x);
+        }
+    }
+    MESSAGE("beyond the edge at most: ", most, " m");
+    // Least discs on the edge have 20 photons, of the bright half: 1.1 cm. Twice that, and the next radius: 3.1 cm.
+    CHECK(most < 0.032F);
+}
+
+TEST_CASE("photons of no group do not count") {
+    const Square square(8, 20'000, 1);
+    BandwidthScratch scratch;
+    int wide = 0;
+    for (uint32_t i = 0; i < square.tree.count; i += 400) {
+        const Vec3 p = positionOf(square, i);
+        if (std::max(std::fabs(p.x), std::fabs(p.y)) > 0.8F) continue;
+        const Bandwidth b = consistentBandwidth(square.source(1), i, kRule, scratch);
+        if (b.count < 200) continue;
+        CHECK(b.count == doctest::Approx(10'000 * kPi * b.radius * b.radius).epsilon(0.35));
+        ++wide;
+    }
+    CHECK(wide > 50);
+}
+
+TEST_CASE("a bandwidth ends where the power of the photons changes and not their number") {
+    Square square(9, 20'000, 1);
+    for (uint32_t i = 0; i < square.tree.count; ++i)
+        if (positionOf(square, i).x > 0) square.tree.payload[i].power = packPower(Rgb(50, 100, 150), i);
+    BandwidthScratch scratch;
+    double reaching = 0, there = 0;
+    for (uint32_t i = 0; i < square.tree.count; i += 10) {
+        const Vec3 p = positionOf(square, i);
+        // Far enough for a least disc to be dark; the largest, of 1000 photons, would reach 12 cm.
+        if (p.x > -0.03F || p.x < -0.06F || std::fabs(p.y) > 0.7F) continue;
+        ++there;
+        reaching += consistentBandwidth(square.source(), i, kRule, scratch).radius + p.x > 0.02F ? 1 : 0;
+    }
+    REQUIRE(there > 50);
+    CHECK(reaching / there < 0.05);
+}
+
+TEST_CASE("a bandwidth does not depend on what its memory was used for before") {
+    const Square square(10, 5000, 20);
+    BandwidthScratch used;
+    Random random(11);
+    for (int i = 0; i < 1000; ++i) {
+        const uint32_t photon = random.bits() % static_cast<uint32_t>(square.tree.count);
+        BandwidthScratch fresh;
+        const Bandwidth a = consistentBandwidth(square.source(), photon, kRule, used);
+        const Bandwidth b = consistentBandwidth(square.source(), photon, kRule, fresh);
+        REQUIRE(a.radius == b.radius);
+        REQUIRE(a.count == b.count);
+    }
+}
+
+TEST_CASE("where there are fewer photons than the least disc holds the bandwidth is the largest radius") {
+    const Square square(12, 5, 1);
+    REQUIRE(square.tree.count > 5);
+    BandwidthScratch scratch;
+    for (uint32_t i = 0; i < square.tree.count; ++i)
+        CHECK(consistentBandwidth(square.source(), i, kRule, scratch).radius == 0.5F);
+}

@@ -1,0 +1,35 @@
+// A lit square for tests of bandwidths and of what is cached of them.
+#pragma once
+
+#include "photon/bandwidth.h"
+#include "photon/photons.h"
+
+namespace lsde::test {
+
+// Photons of even power on the square [-1, 1]^2 of the plane z = 0, `density` of them a m2 where x < 0 and as many
+// times `contrast` where x > 0; every other one in group 1.
+struct Square {
+    PhotonTree tree;
+    AnyIndex index;
+    SurfaceExtent extent;
+    std::vector<uint16_t> groups;
+
+    Square(uint32_t seed, float density, float contrast)
+        : tree(make(seed, density, contrast)), index(KdIndex(view(tree))) {
+        for (size_t i = 0; i < tree.count; ++i) groups.push_back(tree.payload[i].light);
+    }
+    static PhotonTree make(uint32_t seed, float density, float contrast) {
+        Random random(seed);
+        std::vector<Photon> photons;
+        for (const float side : {-1.0F, 1.0F})
+            for (uint32_t n = random.poisson(2.0 * density * (side > 0 ? contrast : 1)); n-- > 0;) {
+                Photon p = photonAt({side * random.uniform(), random.between(-1, 1), 0}, random.bits());
+                p.light = static_cast<uint16_t>(photons.size() % 2);
+                photons.push_back(p);
+            }
+        return treeOf(photons);
+    }
+    PhotonSource source(size_t groupCount = 2) const { return {index, extent, groups, groupCount, 1, 0.5F}; }
+};
+
+}  // namespace lsde::test
