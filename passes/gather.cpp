@@ -114,13 +114,14 @@ DensityQuery ClassGather::densityQuery(const PhotonGatherQuery& query, GatherScr
     density.medium = query.medium;
     density.minCount = rule_.minCount;
     density.requiredFlags = query.glossyOnly ? kGlossyGather : 0;
-    density.maxRadius = maxRadius_;
+    const float least = leastRadius(query.point.position);
+    density.maxRadius = std::max(maxRadius_, least);
     if (progressive_.pilot != nullptr) {
         const float r1 =
             distanceToKth(*progressive_.pilot, query.point.position, progressive_.k, maxRadius_, scratch.pilot);
-        density.minRadius = density.maxRadius = r1 * progressive_.scale;
+        density.minRadius = density.maxRadius = std::max(r1 * progressive_.scale, least);
     } else {
-        density.minRadius = std::min(rule_.footprintShare * query.point.footprint, maxRadius_);
+        density.minRadius = std::clamp(rule_.footprintShare * query.point.footprint, least, density.maxRadius);
     }
     return density;
 }
@@ -197,8 +198,9 @@ PhotonGather::PhotonGather(const GatherInput& input, const GatherSettings& setti
     BandwidthRule& bandwidth = rule.irradiance.bandwidth;
     // Pass by pass smaller, like the caustics' radius.
     const float shrunk = square(settings.progressive.scale);
-    bandwidth.leastCount = static_cast<uint32_t>(static_cast<float>(bandwidth.leastCount) * shrunk);
-    bandwidth.mostCount = static_cast<uint32_t>(static_cast<float>(bandwidth.mostCount) * shrunk);
+    bandwidth.leastCount = std::max(2U, static_cast<uint32_t>(static_cast<float>(bandwidth.leastCount) * shrunk));
+    bandwidth.mostCount =
+        std::max(bandwidth.leastCount, static_cast<uint32_t>(static_cast<float>(bandwidth.mostCount) * shrunk));
     indirect_.emplace(input, PhotonClass::Indirect, settings.index, rule, ProgressiveRadius(), run);
 }
 

@@ -45,14 +45,18 @@ void SamplePlan::adapt(const std::vector<SampleStatistics>& statistics) {
     rates_.resize(wanted.size());
     // The bounds change the sum: a few rounds find the factor that brings the mean to one.
     double factor = static_cast<double>(wanted.size()) / sum;
+    double reached = 0;
     for (int round = 0; round < 8; ++round) {
-        double reached = 0;
+        reached = 0;
         for (size_t i = 0; i < wanted.size(); ++i) {
             rates_[i] = std::clamp(static_cast<float>(factor) * wanted[i], kLeastRate, kMostRate);
             reached += rates_[i];
         }
         factor *= static_cast<double>(wanted.size()) / reached;
     }
+    // Where few pixels are noisy, these have the most that is allowed, and the others get what is left.
+    const double left = (static_cast<double>(wanted.size()) - reached) / static_cast<double>(wanted.size());
+    for (float& rate : rates_) rate = std::max(kLeastRate, rate + static_cast<float>(left));
 }
 
 uint64_t SamplePlan::count(size_t pixel, uint64_t samples) const {

@@ -21,8 +21,7 @@ struct SampleStatistics {
 // The mean number of samples a pixel, S, says how many each has: a function of S and of the first kUniform samples
 // alone, so that a picture stopped by time can be made again by count. A pixel's share depends on the noise of its
 // neighbours, and on its own samples only through the factor that all pixels share: a count chosen by the values that
-// it averages would bias the mean (Kirk & Arvo 1991). Rates are bounded, so that where few pixels are noisy fewer
-// samples than S are given.
+// it averages would bias the mean (Kirk & Arvo 1991). Rates are bounded; what the bounds leave over all get alike.
 class SamplePlan {
   public:
     static constexpr uint64_t kUniform = 8;

@@ -10,6 +10,8 @@ namespace {
 constexpr int kMostLevels = 24;
 // Standard errors by which the power in a ring may differ from that in the disc of equal area within it.
 constexpr double kRingTolerance = 3;
+// And by which the power in a disc may lie to one side.
+constexpr double kBalanceTolerance = 3;
 // Photons whose own block of the tree is this many times as dense as the smallest disc belong to something else, beyond
 // an edge. A few of them are no chance: a block's density has an error of a quarter.
 constexpr float kDense = 4;
@@ -21,8 +23,10 @@ struct Ring {
     uint32_t dense = 0;                 // photons among many more than the estimate has, see kDense
     double p = 0, pd2 = 0;              // sums of power, times distance^2
     double pp = 0, ppd2 = 0, ppd4 = 0;  // of power^2, times distance^2 and ^4
+    Vec3 moment{0};                     // sum of power times offset from the middle
 
-    void add(double power, double d2) {
+    void add(double power, Vec3 offset, double d2) {
+        moment += static_cast<float>(power) * offset;
         ++count;
         p += power;
         pd2 += power * d2;
@@ -37,8 +41,15 @@ struct Ring {
         pp += r.pp;
         ppd2 += r.ppd2;
         ppd4 += r.ppd4;
+        moment += r.moment;
     }
 };
+
+// In even light the power around the middle balances. On an edge it does not, at whatever radius, where comparing discs
+// with each other shows nothing: each is half lit.
+bool isLopsided(const Ring& within) {
+    return glm::dot(within.moment, within.moment) > square(kBalanceTolerance) * within.ppd2;
+}
 
 struct Estimate {
     double value = 0, variance = 0;
@@ -77,6 +88,8 @@ class RadiusSearch {
             if (level > 0 && square(ring.p - within.p) > square(kRingTolerance) * (ring.pp + within.pp))
                 return atLevel(level - 1, within.count);
             within.add(ring);
+            if (level > 0 && scratch_.surface.whole() && isLopsided(within))
+                return atLevel(level - 1, within.count - ring.count);
             Estimate& e = estimates[static_cast<size_t>(level)];
             e = estimateOf(within, r2, scratch_.surface.share(std::min(std::sqrt(r2), query_.maxRadius)));
             for (int smaller = 0; smaller < level; ++smaller) {
@@ -85,7 +98,7 @@ class RadiusSearch {
                 const double variance = e.variance * static_cast<double>(1 << (level - smaller));
                 if (square(e.value - estimates[static_cast<size_t>(smaller)].value) >
                     square(rule_.tolerance) * variance)
-                    return atLevel(level - 1, within.count - rings_[static_cast<size_t>(level)].count);
+                    return atLevel(level - 1, within.count - ring.count);
             }
             const bool last = level + 1 == kMostLevels || 2 * r2 > square(query_.maxRadius) ||
                               2 * within.count > static_cast<double>(rule_.mostCount);
@@ -120,7 +133,8 @@ class RadiusSearch {
             if (!scratch_.surface.whole() && scratch_.surface.hides(index.tree().position(c.index))) continue;
             const Rgb power = unpackPower(index.tree().payload[c.index].power);
             Ring& ring = rings_[static_cast<size_t>(level)];
-            ring.add(power.x + power.y + power.z, c.distanceSquared);
+            ring.add(power.x + power.y + power.z, index.tree().position(c.index) - query_.point.position,
+                     c.distanceSquared);
             if (level > 0 && isDense(index.tree(), c.index / kBlockSize)) ++ring.dense;
         }
     }
@@ -154,6 +168,7 @@ DensityQuery queryAt(const PhotonSource& source, uint32_t photon) {
     query.sideNormal = (at.flags & kLandedOnFront) != 0 ? query.point.ng : -query.point.ng;
     query.medium = at.medium;
     query.maxRadius = source.maxRadius;
+    query.minRadius = leastRadius(query.point.position);
     return query;
 }
 

@@ -82,6 +82,8 @@ float kthOfFew(const float* values, size_t size, uint32_t k) {
 
 }  // namespace
 
+float leastRadius(Vec3 position) { return std::max(1e-12F, surfaceEpsilon(position, 0)); }
+
 float firstRadius(const PhotonTreeView& tree, const DensityQuery& query, const DensityScratch& scratch) {
     const Vec3 moved = query.point.position - scratch.lastPosition;
     if (glm::dot(moved, moved) < square(scratch.lastRadius) && scratch.lastFound <= kWasteful * query.minCount)

@@ -19,6 +19,9 @@ struct DensityQuery {
     float minRadius = 0, maxRadius = 0;  // m, finite; equal: fixed
 };
 
+// Of an estimate at the position, in m: at a focus many photons may lie there together, to rounding.
+float leastRadius(Vec3 position);
+
 struct GatheredDisc {
     float radius = 0;       // m
     uint32_t accepted = 0;  // photons in it that count
