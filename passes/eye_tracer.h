@@ -15,12 +15,13 @@ namespace lsde {
 
 struct EyeSettings {
     Stage stage = Stage::Camera;
-    int splits = 3;                   // interfaces split after every non-specular vertex
-    float splitThreshold = 1e-3F;     // of the pixel: least throughput of a branch
+    int splits = 12;                  // most interfaces split after every non-specular vertex
+    float splitThreshold = 5e-4F;     // of the pixel: least throughput of a branch
     int indirectBranches = 1;         // directions in which a path goes on from its first vertex without delta lobes
     float rouletteThreshold = 0.02F;  // throughput below which Russian roulette may end a path
     int freeDepth = 24;               // events after which it may end any
     int maxDepth = 0;                 // events; 0: no limit
+    bool quarterLights = false;       // samples light four times at the first diffuse vertex, else once
 };
 
 struct SampleSpan {

@@ -223,7 +223,7 @@ PilotFindings pilotEmission(LightTracerInput input, ThreadPool& pool) {
     constexpr uint64_t kPaths = 8192, kPathsPerChunk = 512;
     constexpr float kLeastAimed = 0.25F, kMostAimed = 0.9F;
     // Rays of light that met a D, for each other ray: as its flux is to that of caustics, within bounds.
-    constexpr double kLeastRaysAfterDiffuse = 0.8, kMostRaysAfterDiffuse = 2;
+    constexpr double kLeastRaysAfterDiffuse = 0.25, kMostRaysAfterDiffuse = 2;
     input.fairPower = input.sources.fairPower();
     if (input.store == Store::Caustic) return {input.fairPower, kPilotDiffuseAimShare};
     input.stage = Stage::EmissionPilot;

@@ -1,7 +1,9 @@
 #include "passes/sample_plan.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <numeric>
 
 #include "base/hash.h"
 
@@ -10,61 +12,69 @@ namespace lsde {
 namespace {
 
 constexpr float kLeastRate = 0.25F, kMostRate = 16;
+// Pixels up to this far away say what a pixel's noise is.
+constexpr int kReach = 3;
 
 }  // namespace
 
-void SamplePlan::adapt(const std::vector<SampleStatistics>& statistics) {
+// Standard error of each pixel's mean, as its neighbours show it, relative to the brightness.
+std::vector<float> SamplePlan::noiseAround(const std::vector<SampleStatistics>& statistics) const {
     const auto n = static_cast<double>(kUniform);
     double total = 0;
-    for (const SampleStatistics& s : statistics) total += s.sum / n;
+    for (const SampleStatistics& s : statistics) total += (s.sum[0] + s.sum[1]) / n;
     const double mean = total / static_cast<double>(statistics.size());
-    std::vector<float> noise(statistics.size());
-    for (size_t i = 0; i < noise.size(); ++i) {
-        const double own = statistics[i].sum / n;
-        const double variance = std::max(0.0, statistics[i].sumOfSquares / n - own * own);
-        noise[i] = static_cast<float>(variance / (own * own + mean * mean + 1e-30));
+    std::vector<float> variance(statistics.size());
+    for (size_t i = 0; i < variance.size(); ++i) {
+        const auto& [first, second] = statistics[i].sum;
+        variance[i] =
+            static_cast<float>(square((first - second) / n) / (square((first + second) / n) + mean * mean + 1e-30));
     }
-    std::vector<float> wanted(noise.size());
-    double sum = 0;
+    std::vector<float> noise(variance.size());
     for (int y = 0; y < height_; ++y)
         for (int x = 0; x < width_; ++x) {
-            float around = 0;
+            float sum = 0;
             int count = 0;
-            for (int v = std::max(0, y - 1); v <= std::min(height_ - 1, y + 1); ++v)
-                for (int u = std::max(0, x - 1); u <= std::min(width_ - 1, x + 1); ++u) {
+            for (int v = std::max(0, y - kReach); v <= std::min(height_ - 1, y + kReach); ++v)
+                for (int u = std::max(0, x - kReach); u <= std::min(width_ - 1, x + kReach); ++u) {
                     if (u == x && v == y) continue;
-                    around += noise[static_cast<size_t>(v) * static_cast<size_t>(width_) + static_cast<size_t>(u)];
+                    sum += variance[static_cast<size_t>(v) * static_cast<size_t>(width_) + static_cast<size_t>(u)];
                     ++count;
                 }
-            // The sum of sigma^2 / n is least, at a given number of samples, when n goes by sigma.
-            const float w = count > 0 ? std::sqrt(around / static_cast<float>(count)) : 0;
-            wanted[static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x)] = w;
-            sum += w;
+            if (count > 0)
+                noise[static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x)] =
+                    std::sqrt(sum / static_cast<float>(count));
         }
+    return noise;
+}
+
+void SamplePlan::adapt(const std::vector<SampleStatistics>& statistics) {
+    // The sum of sigma^2 / n is least, at a given number of samples, when n goes by sigma.
+    const std::vector<float> wanted = noiseAround(statistics);
+    const double sum = std::accumulate(wanted.begin(), wanted.end(), 0.0);
     if (!(sum > 0)) return;
+    const auto pixels = static_cast<double>(wanted.size());
     rates_.resize(wanted.size());
     // The bounds change the sum: a few rounds find the factor that brings the mean to one.
-    double factor = static_cast<double>(wanted.size()) / sum;
-    double reached = 0;
+    double factor = pixels / sum, reached = 0;
     for (int round = 0; round < 8; ++round) {
         reached = 0;
         for (size_t i = 0; i < wanted.size(); ++i) {
             rates_[i] = std::clamp(static_cast<float>(factor) * wanted[i], kLeastRate, kMostRate);
             reached += rates_[i];
         }
-        factor *= static_cast<double>(wanted.size()) / reached;
+        factor *= pixels / reached;
     }
     // Where few pixels are noisy, these have the most that is allowed, and the others get what is left.
-    const double left = (static_cast<double>(wanted.size()) - reached) / static_cast<double>(wanted.size());
-    for (float& rate : rates_) rate = std::max(kLeastRate, rate + static_cast<float>(left));
+    const auto left = static_cast<float>((pixels - reached) / pixels);
+    for (float& rate : rates_) rate = std::max(kLeastRate, rate + left);
 }
 
 uint64_t SamplePlan::count(size_t pixel, uint64_t samples) const {
     if (samples <= kUniform || rates_.empty()) return samples;
-    // Rounded up as often as the fraction says.
     const double u = static_cast<double>(mix64(pixel) >> 40) * 0x1p-24;
-    return kUniform +
-           static_cast<uint64_t>(static_cast<double>(rates_[pixel]) * static_cast<double>(samples - kUniform) + u);
+    const double n = kUniform + static_cast<double>(rates_[pixel]) * static_cast<double>(samples - kUniform);
+    const uint64_t lower = std::bit_floor(static_cast<uint64_t>(n));
+    return static_cast<double>(lower) * (1 + u) < n ? 2 * lower : lower;
 }
 
 }  // namespace lsde

@@ -8,13 +8,15 @@
 
 namespace lsde {
 
-// A pixel's samples so far.
+// Luminance of a pixel's first samples, in two halves, each as evenly distributed as the whole: their difference shows
+// the noise that is left, where the spread of single samples does not.
 struct SampleStatistics {
-    float sum = 0, sumOfSquares = 0;  // of the samples' luminance
+    static constexpr uint64_t kSamples = 8;
 
-    void add(float luminance) {
-        sum += luminance;
-        sumOfSquares += luminance * luminance;
+    float sum[2] = {0, 0};
+
+    void add(uint64_t sample, float luminance) {
+        if (sample < kSamples) sum[sample / (kSamples / 2)] += luminance;
     }
 };
 
@@ -22,21 +24,28 @@ struct SampleStatistics {
 // alone, so that a picture stopped by time can be made again by count. A pixel's share depends on the noise of its
 // neighbours, and on its own samples only through the factor that all pixels share: a count chosen by the values that
 // it averages would bias the mean (Kirk & Arvo 1991). Rates are bounded; what the bounds leave over all get alike.
+// Counts are powers of two, at which Sobol's points are distributed best: the larger or the smaller one by chance, so
+// that the mean is right.
 class SamplePlan {
   public:
-    static constexpr uint64_t kUniform = 8;
+    static constexpr uint64_t kUniform = SampleStatistics::kSamples;
 
     SamplePlan(int width, int height) : width_(width), height_(height) {}
 
     // Gives out what comes after the first samples, by relative variance: sigma^2 / (mean^2 + (mean of the picture)^2).
     void adapt(const std::vector<SampleStatistics>& statistics);
 
+    // Samples of the pixel for each one of the mean, after the first.
+    float rate(size_t pixel) const { return rates_.empty() ? 1 : rates_[pixel]; }
+
     // Samples of the pixel when the mean is `samples`.
     uint64_t count(size_t pixel, uint64_t samples) const;
 
   private:
+    std::vector<float> noiseAround(const std::vector<SampleStatistics>& statistics) const;
+
     int width_, height_;
-    std::vector<float> rates_;  // samples for each one of the mean, after the first; empty: 1
+    std::vector<float> rates_;  // empty: 1
 };
 
 }  // namespace lsde

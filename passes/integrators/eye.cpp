@@ -46,7 +46,12 @@ class EyeIntegrator : public Integrator {
     static EyeSettings settings(bool photons) {
         EyeSettings s;
         s.stage = photons ? Stage::Camera : Stage::Reference;
-        if (photons) s.indirectBranches = 2;
+        if (!photons) return s;
+        s.indirectBranches = 2;
+        s.quarterLights = true;
+        // What a gather or a lamp adds may be a thousand times the pixel: seen by chance alone it would be a bright
+        // dot.
+        s.rouletteThreshold = 5e-4F;
         return s;
     }
 

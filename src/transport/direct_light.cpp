@@ -35,6 +35,7 @@ LightSampler::LightSampler(const Scene& scene, const std::vector<bool>& selected
     for (size_t i = 0; i < weights.size(); ++i)
         if (const auto* area = std::get_if<AreaLight>(&scene.lights()[i].shape); area != nullptr && selected[i])
             emitters.push_back({area->bounds.centre(), area->bounds.radius()});
+    onePoint_ = count == 1 && emitters.empty();
     if (!emitters.empty()) emitters_ = groupCasters(std::move(emitters), kMostEmitters);
 }
 

@@ -19,13 +19,16 @@ class LightSampler {
     size_t choose(float& u) const { return choice_.sample(u); }
     float probability(size_t light) const { return choice_.pmf(light); }
     bool selected(size_t light) const { return choice_.pmf(light) > 0; }
+    // A single point or direction: all samples at a vertex are the same.
+    bool onePoint() const { return onePoint_; }
     // For walks that end at a Lambertian vertex: the probability with which to look for emitters in a sampled direction
     // all the same. 1 where they may be near and light sampling alone is noisy; 0 where there are none.
     float bsdfSamples(const Vertex& vertex) const;
 
   private:
     std::vector<Caster> emitters_;  // spheres that hold the lights with an area
-    DiscreteDistribution choice_;   // by power, with a floor for each: no light is starved
+    bool onePoint_ = false;
+    DiscreteDistribution choice_;  // by power, with a floor for each: no light is starved
 };
 
 // One sampled light at a vertex: radiance towards wo by each lobe, MIS-weighted where the BSDF may hit the light too.
