@@ -157,6 +157,7 @@ const GatheredLight& ClassGather::gather(const PhotonGatherQuery& query, const B
     const SurfaceAround& surface = scratch.surface;
     extent_.around(query.point.position, query.point.ng, std::max(density.minRadius, density.maxRadius),
                    scratch.surface);
+    density.balanced = surface.whole();
     const auto* diffuse = std::get_if<DiffuseBsdf>(&bsdf);
     const bool flat = diffuse != nullptr && glm::dot(query.point.ng, query.point.ns) > kFlat;
     GatheredPaths total;

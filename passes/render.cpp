@@ -18,7 +18,7 @@ namespace {
 constexpr uint64_t kDefaultSamples = 64;
 // Of a time limit, where there are caustics: what the pixels can spare, within bounds.
 constexpr double kLeastEmissionShare = 0.33, kMostEmissionShare = 0.5;
-constexpr double kPixelSeconds = 1e-4;  // for the samples that a pixel should get, roughly
+constexpr double kPixelSeconds = 1e-4;  // for a dozen samples, roughly, of a pixel that sees a surface
 constexpr uint32_t kPilotRadiusPhotons = 50;
 
 // What ends the camera pass.
@@ -115,8 +115,23 @@ class Render {
 
   private:
     double emissionShare() const {
-        const double pixels = static_cast<double>(camera_.filmWidth()) * camera_.filmHeight();
+        const double pixels = filledShare() * static_cast<double>(camera_.filmWidth()) * camera_.filmHeight();
         return std::clamp(1 - kPixelSeconds * pixels / clock_.limit(), kLeastEmissionShare, kMostEmissionShare);
+    }
+
+    // Of the picture: where there is anything to see.
+    double filledShare() const {
+        constexpr int kSide = 64;
+        int hits = 0;
+        for (int y = 0; y < kSide; ++y)
+            for (int x = 0; x < kSide; ++x) {
+                const Vec2 at((static_cast<float>(x) + 0.5F) / kSide, (static_cast<float>(y) + 0.5F) / kSide);
+                const Vec2 pixel =
+                    Vec2(camera_.filmX(), camera_.filmY()) + at * Vec2(camera_.filmWidth(), camera_.filmHeight());
+                Hit hit;
+                if (scene_.accel().intersect(camera_.ray(pixel, Vec2(0)).ray, hit)) ++hits;
+            }
+        return static_cast<double>(hits) / (kSide * kSide);
     }
 
     double reserve() const {  // s: developing and writing the picture

@@ -58,6 +58,9 @@ constexpr float kBeyondLast = 1.15F;
 // the map grows dense here.
 constexpr size_t kWasteful = 4;
 
+// Standard errors by which photons in a disc may lie to one side by chance.
+constexpr float kBalanceTolerance = 2;
+
 constexpr size_t kLanes = 8;
 // Up to about this many, comparing each with each is faster than buckets.
 constexpr size_t kFew = 64;
@@ -113,6 +116,22 @@ float radiusSquaredHolding(uint32_t count, float radius, DensityScratch& scratch
     if (size > kFew) return kthSmallest({entries, size}, count, radius * radius);
     std::fill_n(entries + size, kLanes - 1, kInfinity);
     return kthOfFew(entries, size, count);
+}
+
+float balancedRadiusSquared(const PhotonTreeView& tree, const DensityQuery& query, float radiusSquared,
+                            const DensityScratch& scratch) {
+    const float least = square(query.minRadius);
+    for (; radiusSquared > least; radiusSquared = std::max(least, radiusSquared / 2)) {
+        Vec3 moment(0);
+        float moments = 0;
+        for (const DensityScratch::Candidate& c : scratch.accepted) {
+            if (!(c.entrySquared < radiusSquared)) continue;
+            moment += tree.position(c.index) - query.point.position;
+            moments += c.distanceSquared;
+        }
+        if (!(glm::dot(moment, moment) > square(kBalanceTolerance) * moments)) break;
+    }
+    return radiusSquared;
 }
 
 float distanceToKth(const AnyIndex& index, Vec3 position, uint32_t k, float maxRadius, DensityScratch& scratch) {

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 
 #include "base/error.h"
+#include "base/ray.h"
 #include "photon/kd_index.h"
 
 namespace lsde {
@@ -27,7 +29,7 @@ class Sorter {
     void sort(std::span<Key> keys) const {
         if (keys.size() <= kBlockSize) return sortBlock(keys);
         const size_t left = splitPosition(keys.size());
-        partition(keys, left, longestAxis(keys));
+        partition(keys, left);
         const auto sortLeft = [&] { sort(keys.first(left)); };
         const auto sortRight = [&] { sort(keys.subspan(left)); };
         if (keys.size() >= kParallelPhotons) return pool_.both(sortLeft, sortRight);
@@ -44,16 +46,40 @@ class Sorter {
         return child * ((children + 1) / 2);
     }
 
-    static size_t longestAxis(std::span<const Key> keys) {
+    static Bounds boundsOf(std::span<const Key> keys) {
         Bounds bounds;
         for (const Key& key : keys) bounds.grow(Vec3(key.position[0], key.position[1], key.position[2]));
-        const Vec3 extent = bounds.extent();
+        return bounds;
+    }
+
+    static size_t longestAxis(Vec3 extent) {
         if (extent.x >= extent.y && extent.x >= extent.z) return 0;
         return extent.y >= extent.z ? 1 : 2;
     }
 
+    // The `left` smallest along the longest axis come first. Where the cut falls on a plane across that axis, rounding
+    // alone would tell the plane's photons apart, and both halves would be spread over all of it: they are cut along
+    // the plane.
+    void partition(std::span<Key> keys, size_t left) const {
+        const Bounds bounds = boundsOf(keys);
+        const size_t axis = longestAxis(bounds.extent());
+        cutAlong(axis, keys, left);
+        const float middle = keys[left].position[axis];
+        const float rounding = surfaceEpsilon(glm::max(glm::abs(bounds.lo), glm::abs(bounds.hi)), 0);
+        const auto onPlane = [=](const Key& key) { return std::fabs(key.position[axis] - middle) <= rounding; };
+        if (std::count_if(keys.begin(), keys.end(), onPlane) <= static_cast<ptrdiff_t>(kBlockSize)) return;
+        const auto first =
+            std::partition(keys.begin(), keys.begin() + static_cast<ptrdiff_t>(left), std::not_fn(onPlane));
+        const auto last = std::partition(keys.begin() + static_cast<ptrdiff_t>(left), keys.end(), onPlane);
+        const std::span<Key> plane(first, last);
+        Vec3 extent = boundsOf(plane).extent();
+        extent[static_cast<int>(axis)] = 0;
+        cutAlong(longestAxis(extent), plane, left - static_cast<size_t>(first - keys.begin()));
+    }
+
     // The `left` smallest along the axis come first.
-    void partition(std::span<Key> keys, size_t left, size_t axis) const {
+    void cutAlong(size_t axis, std::span<Key> keys, size_t left) const {
+        if (left >= keys.size()) return;
         std::nth_element(keys.begin(), keys.begin() + static_cast<ptrdiff_t>(left), keys.end(),
                          [this, axis](const Key& a, const Key& b) {
                              if (a.position[axis] != b.position[axis]) return a.position[axis] < b.position[axis];

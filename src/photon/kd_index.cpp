@@ -70,7 +70,57 @@ class SphereSearch {
     NeighbourList& out_;
 };
 
-std::array<float, 3> sidesOf(const KdNode& node, uint32_t lane) {
+// Finds the block of the photon that is nearest to a point. That its box is near says little: boxes of photons on two
+// walls cover much that is empty.
+class BlockSearch {
+  public:
+    struct Found {
+        uint32_t block = 0;
+        float distanceSquared = kInfinity;  // m2, of the photon
+    };
+
+    BlockSearch(const PhotonTreeView& tree, Vec3 p) : tree_(tree), shape_(tree.count), point_(p.x, p.y, p.z, 0) {}
+
+    Found run() {
+        descend(static_cast<size_t>(shape_.levels) - 1, 0);
+        return found_;
+    }
+
+  private:
+    void descend(size_t level, uint32_t node) {
+        alignas(32) std::array<float, kNodeWidth> distances;
+        __m256 d = lanes::distanceToBoxes(tree_.nodes[shape_.first[level] + node], point_);
+        _mm256_store_ps(distances.data(), d);
+        for (;;) {
+            const uint32_t lane = lanes::leastLane(d);
+            if (!(distances[lane] < found_.distanceSquared)) return;
+            const uint32_t child = kNodeWidth * node + lane;
+            if (level > 0)
+                descend(level - 1, child);
+            else
+                lookAt(child);
+            distances[lane] = kInfinity;
+            d = _mm256_load_ps(distances.data());
+        }
+    }
+    void lookAt(uint32_t block) {
+        const __m256 d = _mm256_min_ps(lanes::distanceToPhotons(tree_.blocks[block], 0, point_),
+                                       lanes::distanceToPhotons(tree_.blocks[block], kNodeWidth, point_));
+        alignas(32) std::array<float, kNodeWidth> distances;
+        _mm256_store_ps(distances.data(), d);
+        const float least = distances[lanes::leastLane(d)];
+        if (least < found_.distanceSquared) found_ = {block, least};
+    }
+
+    const PhotonTreeView& tree_;
+    KdShape shape_;
+    lanes::Sphere8 point_;
+    Found found_;
+};
+
+std::array<float, 3> sidesOf(const PhotonTreeView& tree, uint32_t block) {
+    const KdNode& node = tree.nodes[KdShape(tree.count).first[0] + block / kNodeWidth];
+    const uint32_t lane = block % kNodeWidth;
     return {node.hiX[lane] - node.loX[lane], node.hiY[lane] - node.loY[lane], node.hiZ[lane] - node.loZ[lane]};
 }
 
@@ -103,42 +153,18 @@ float KdIndex::reachOfAll(Vec3 centre) const {
     return std::max(1.0001F * glm::length(farthest), kLeastRadius);  // above all roundings
 }
 
-float boxArea(const PhotonTreeView& tree, uint32_t block) {
-    const KdShape shape(tree.count);
-    return areaOf(sidesOf(tree.nodes[shape.first[0] + block / kNodeWidth], block % kNodeWidth));
-}
+float boxArea(const PhotonTreeView& tree, uint32_t block) { return areaOf(sidesOf(tree, block)); }
 
-uint32_t nearestBlock(const PhotonTreeView& tree, Vec3 p) {
-    const KdShape shape(tree.count);
-    const lanes::Sphere8 point(p.x, p.y, p.z, 0);
-    uint32_t node = 0;
-    for (auto level = static_cast<size_t>(shape.levels); level-- > 0;)
-        node =
-            kNodeWidth * node + lanes::leastLane(lanes::distanceToBoxes(tree.nodes[shape.first[level] + node], point));
-    return node;
-}
+uint32_t nearestBlock(const PhotonTreeView& tree, Vec3 p) { return BlockSearch(tree, p).run().block; }
 
 float guessRadius(const PhotonTreeView& tree, Vec3 centre, uint32_t count) {
-    const KdShape shape(tree.count);
-    if (shape.levels == 0 || !isFinite(centre)) return 1;
-    const lanes::Sphere8 point(centre.x, centre.y, centre.z, 0);
-    uint32_t node = 0, lane = 0;
-    const KdNode* at = nullptr;
-    float distanceSquared = 0;
-    for (auto level = static_cast<size_t>(shape.levels); level-- > 0; node = kNodeWidth * node + lane) {
-        at = &tree.nodes[shape.first[level] + node];
-        alignas(32) std::array<float, 8> distances;
-        const __m256 d = lanes::distanceToBoxes(*at, point);
-        lane = lanes::leastLane(d);
-        _mm256_store_ps(distances.data(), d);
-        distanceSquared = distances[lane];
-    }
-    const std::array<float, 3> side = sidesOf(*at, lane);
-    const float area = areaOf(side);
-    const float disc = std::sqrt(kSurplus * static_cast<float>(count) * area / (kPi * kBlockSize));
+    if (tree.count == 0 || !isFinite(centre)) return 1;
+    const BlockSearch::Found found = BlockSearch(tree, centre).run();
+    const std::array<float, 3> side = sidesOf(tree, found.block);
+    const float disc = std::sqrt(kSurplus * static_cast<float>(count) * areaOf(side) / (kPi * kBlockSize));
     // Without area (one photon, or all in a row), any positive number will do, and grows.
     const float least = 1e-3F * (side[0] + side[1] + side[2]) + 1e-6F * tree.bounds.radius() + kLeastRadius;
-    return std::sqrt(distanceSquared) + std::max(disc, least);
+    return std::sqrt(found.distanceSquared) + std::max(disc, least);
 }
 
 float grownRadius(float radius, uint64_t wanted, uint64_t found) {

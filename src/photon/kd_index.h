@@ -79,7 +79,7 @@ KdNode nodeOver(std::span<const PhotonBlock> blocks);
 KdNode nodeOver(std::span<const KdNode> children);
 Bounds boundsOf(const KdNode& node);
 
-// The block whose box is nearest to p, or nearly (found greedily). The tree is not empty.
+// The block of the photon nearest to p. The tree is not empty, p is finite.
 uint32_t nearestBlock(const PhotonTreeView& tree, Vec3 p);
 // Of the block's box, by its two longer sides: photons lie on surfaces. m2.
 float boxArea(const PhotonTreeView& tree, uint32_t block);

@@ -83,7 +83,8 @@ SurfaceExtent::SurfaceExtent(std::span<const Segment> creases, float maxRadius)
     std::sort(entries.begin(), entries.end());
     for (const auto& [cell, crease] : entries) {
         Range& range = cells_.try_emplace(cell, Range{static_cast<uint32_t>(near_.size()), 0}).first->second;
-        near_.push_back(crease);
+        const auto& [a, b] = creases_[crease];
+        near_.push_back({0.5F * (a + b), 0.5F * glm::length(b - a), crease});
         range.end = static_cast<uint32_t>(near_.size());
     }
 }
@@ -113,15 +114,34 @@ void SurfaceExtent::cellsNear(const Segment& crease, float maxRadius, std::vecto
     out.erase(std::unique(out.begin(), out.end()), out.end());
 }
 
+void SurfaceAround::clear() {
+    cuts_ = 0;
+    lanes_.clear();
+    nearestSquared_ = kInfinity;
+}
+
+void SurfaceAround::add(Vec2 a, Vec2 b) {
+    const size_t lane = cuts_++ % kLanes;
+    if (lane == 0) lanes_.emplace_back();
+    Cuts& c = lanes_.back();
+    c.ax[lane] = a.x;
+    c.ay[lane] = a.y;
+    c.bx[lane] = b.x;
+    c.by[lane] = b.y;
+    c.area[lane] = a.x * b.y - a.y * b.x;
+}
+
 void SurfaceExtent::around(Vec3 centre, Vec3 normal, float radius, SurfaceAround& out) const {
-    out.cuts_.clear();
+    out.clear();
     if (cell_ == 0) return;
     const auto at = cells_.find(cellOf(centre));
     if (at == cells_.end()) return;
     out.frame_ = Frame(normal);
     out.centre_ = centre;
     for (uint32_t i = at->second.begin; i < at->second.end; ++i) {
-        const Segment& crease = creases_[near_[i]];
+        const Near& near = near_[i];
+        if (lengthSquared(near.middle - centre) > square(radius + near.halfLength)) continue;
+        const Segment& crease = creases_[near.crease];
         const Vec3 a = out.frame_.toLocal(crease.a - centre), b = out.frame_.toLocal(crease.b - centre);
         Vec2 from, to;
         if (!clipToSlab(a, b, kPlaneThickness * radius, from, to)) continue;
@@ -129,29 +149,41 @@ void SurfaceExtent::around(Vec3 centre, Vec3 normal, float radius, SurfaceAround
         const Vec2 along = to - from;
         const float t = std::clamp(-glm::dot(from, along) / std::max(glm::dot(along, along), 1e-20F), 0.0F, 1.0F);
         const Vec2 nearest = from + t * along;
-        if (glm::dot(nearest, nearest) < square(radius)) out.cuts_.push_back({from, to});
+        const float distanceSquared = glm::dot(nearest, nearest);
+        if (!(distanceSquared < square(radius))) continue;
+        out.add(from, to);
+        out.nearestSquared_ = std::min(out.nearestSquared_, distanceSquared);
     }
 }
 
 float SurfaceAround::share(float radius) const {
-    if (whole()) return 1;
+    if (square(radius) <= nearestSquared_) return 1;
     std::array<float, kDirections> reach;
     reach.fill(1);
-    for (const Cut& c : cuts_) cut(c.a / radius, c.b / radius, reach);
+    for (size_t i = 0; i < cuts_; ++i) {
+        const Cuts& c = lanes_[i / kLanes];
+        const size_t lane = i % kLanes;
+        cut(Vec2(c.ax[lane], c.ay[lane]) / radius, Vec2(c.bx[lane], c.by[lane]) / radius, reach);
+    }
     float sum = 0;
     for (const float x : reach) sum += epanechnikovWithin(x);
     return std::max(kLeastShare, sum / kDirections);
 }
 
 bool SurfaceAround::hides(Vec3 p) const {
-    const Vec3 local = frame_.toLocal(p - centre_);
-    const Vec2 q(local);
-    // The segments from the centre to q and from a to b cross.
-    return std::any_of(cuts_.begin(), cuts_.end(), [q](const Cut& c) {
-        const auto area = [](Vec2 u, Vec2 v) { return u.x * v.y - u.y * v.x; };
-        const float centre = area(c.a, c.b), photon = area(c.a - q, c.b - q);
-        return (area(q, c.a) > 0) != (area(q, c.b) > 0) && (centre > 0) != (photon > 0);
-    });
+    const Vec3 q = frame_.toLocal(p - centre_);
+    if (square(q.x) + square(q.y) <= nearestSquared_) return false;
+    for (const Cuts& c : lanes_) {
+        // The segments from the centre to q and from a to b cross.
+        int crossing = 0;
+        for (size_t i = 0; i < kLanes; ++i) {
+            const float toA = q.x * c.ay[i] - q.y * c.ax[i], toB = q.x * c.by[i] - q.y * c.bx[i];
+            const float photon = c.area[i] + toA - toB;
+            crossing |= static_cast<int>((toA > 0) != (toB > 0)) & static_cast<int>((c.area[i] > 0) != (photon > 0));
+        }
+        if (crossing != 0) return true;
+    }
+    return false;
 }
 
 }  // namespace lsde

@@ -17,7 +17,7 @@ namespace lsde {
 class SurfaceAround {
   public:
     // No crease near: the kernel and all photons lie on the surface.
-    bool whole() const { return cuts_.empty(); }
+    bool whole() const { return cuts_ == 0; }
     // Of an Epanechnikov kernel's mass, in (0, 1]. Radii as large as the one asked for in SurfaceExtent::around, or
     // less.
     float share(float radius) const;
@@ -26,12 +26,20 @@ class SurfaceAround {
 
   private:
     friend class SurfaceExtent;
-    struct Cut {
-        Vec2 a, b;  // m, in the tangent plane about the centre
+    static constexpr size_t kLanes = 8;
+    // Cuts from a to b, in m, in the tangent plane about the centre; beyond the last one segments of no length.
+    struct Cuts {
+        std::array<float, kLanes> ax{}, ay{}, bx{}, by{};
+        std::array<float, kLanes> area{};  // twice that of the triangle with the centre, signed
     };
+    void clear();
+    void add(Vec2 a, Vec2 b);
+
     Frame frame_;
     Vec3 centre_{0};
-    std::vector<Cut> cuts_;
+    size_t cuts_ = 0;
+    std::vector<Cuts> lanes_;
+    float nearestSquared_ = 0;  // m2: of all cuts
 };
 
 // An estimate that leaves hidden photons out and divides by the kernel's share neither darkens along edges (without,
@@ -56,7 +64,13 @@ class SurfaceExtent {
     std::vector<Segment> creases_;
     float cell_ = 0;                             // m; 0: there are no creases
     std::unordered_map<uint64_t, Range> cells_;  // ranges of near_
-    std::vector<uint32_t> near_;                 // creases within maxRadius of a cell
+    // Creases within maxRadius of a cell, each within a sphere.
+    struct Near {
+        Vec3 middle{0};
+        float halfLength = 0;
+        uint32_t crease = 0;
+    };
+    std::vector<Near> near_;
 };
 
 }  // namespace lsde

@@ -106,6 +106,38 @@ TEST_CASE("the estimate of a uniform density has no bias in any regime of the ra
     }
 }
 
+TEST_CASE("that a radius must be balanced adds no bias where light is even") {
+    for (const auto& [minCount, minRadius] : {std::pair(20U, 0.001F), std::pair(20U, 0.25F), std::pair(50U, 0.001F)}) {
+        DensityQuery query = queryAtOrigin(minCount, minRadius, 0.9F);
+        query.balanced = true;
+        const Bias bias = biasOnPoissonMaps(query);
+        MESSAGE(minCount << " photons: bias " << 100 * bias.relative << " %, " << bias.sigmas << " sigma");
+        CHECK(std::fabs(bias.relative) < 0.01);
+        CHECK(std::fabs(bias.sigmas) < 3.5);
+    }
+}
+
+TEST_CASE("a balanced radius does not reach over an edge into the light") {
+    // 25 and 10000 photons a m2: the disc of 20 at 5 cm from the edge ends within the light, balanced or not.
+    Random random(3);
+    double grown = 0, balanced = 0;
+    constexpr int kMaps = 300;
+    for (int map = 0; map < kMaps; ++map) {
+        std::vector<Photon> photons;
+        for (const auto& [from, to, density] : {std::tuple(-1.0F, 0.05F, 25.0), std::tuple(0.05F, 1.0F, 10'000.0)})
+            for (uint32_t n = random.poisson(density * static_cast<double>(2 * (to - from))); n-- > 0;)
+                photons.push_back(photonAt({random.between(from, to), random.between(-1, 1), 0}, random.bits()));
+        const PhotonTree tree = treeOf(photons);
+        DensityQuery query = queryAtOrigin(20, 0.01F, 0.9F);
+        grown += estimate(KdIndex(view(tree)), query).density / kMaps;
+        query.balanced = true;
+        balanced += estimate(KdIndex(view(tree)), query).density / kMaps;
+    }
+    MESSAGE("grown: ", grown, ", balanced: ", balanced);
+    CHECK(grown > 100);
+    CHECK(balanced < 40);
+}
+
 TEST_CASE("a photon just outside the radius does not contribute") {
     const DensityQuery query = queryAtOrigin(0, 0.5F, 0.5F);
     CHECK(estimate({photonAt({0.4999F, 0, 0})}, query).disc.accepted == 1);

@@ -47,9 +47,9 @@ TEST_CASE("cached irradiance has no bias where light is even, and keeps groups a
     }
     CHECK(known > 5000);
     // Green power is 2. Twenty maps with some hundred independent estimates each, of about 70 photons; the photon in
-    // the middle of each would add 3%.
-    CHECK(sum / known == doctest::Approx(10'000).epsilon(0.012));
-    CHECK(first / known == doctest::Approx(5'000).epsilon(0.018));
+    // the middle of each, counted in full, would add 1.4%, left out take away as much.
+    CHECK(sum / known == doctest::Approx(10'000).epsilon(0.01));
+    CHECK(first / known == doctest::Approx(5'000).epsilon(0.015));
 }
 
 TEST_CASE("the cache answers for its own side, medium and direction only") {
@@ -87,9 +87,7 @@ TEST_CASE("where many photons are in a disc the cached irradiance is the light's
     }
     MESSAGE("ratio ", ratio.value(), " +- ", ratio.standardError());
     CHECK(ratio.standardError() < 0.003);
-    // Measured on 150 other maps: 0.24% +- 0.09% too low with 50 photons required, perhaps because sparse runs of
-    // blocks are larger and so asked more often.
-    CHECK(std::fabs(ratio.value() - 1) < 0.004 + 4 * ratio.standardError());
+    CHECK(std::fabs(ratio.value() - 1) < 0.001 + 3 * ratio.standardError());
 }
 
 TEST_CASE("beside an edge the cached irradiance is that of its own side") {
