@@ -35,7 +35,7 @@ DensityQuery queryAt(const PhotonSource& source, uint32_t photon);
 struct BandwidthScratch {
     DensityScratch density;  // accepted: afterwards all that lie within the bandwidth, and some more
     SurfaceAround surface;   // about the photon
-    std::vector<Rgb> irradiance;
+    std::vector<Rgb> irradiance, neighbour;
 };
 
 struct Bandwidth {

@@ -22,6 +22,9 @@ constexpr uint32_t kRunsInDisc = 8;
 // Records that are dense must be cheap: a bound on their photons, between that need and what the rule asks for.
 constexpr uint32_t mostCountOf(uint32_t photonsPerRecord) { return 31 * photonsPerRecord + 512; }
 
+// Blocks that may tell of each other: those of a run.
+constexpr size_t kNeighbours = 4;
+
 // And for a point that is closer than this share of the disc's radius.
 constexpr float kNear = 0.4F;
 
@@ -78,7 +81,8 @@ void IrradianceCache::make(uint32_t photon, const BandwidthRule& rule, Bandwidth
     for (Rgb& e : irradiance) e *= scale;
 }
 
-void IrradianceCache::recordOf(Level& level, size_t run, Record& record, BandwidthScratch& scratch) {
+void IrradianceCache::recordOf(Level& level, size_t run, Record& record, std::vector<Rgb>& spare,
+                               BandwidthScratch& scratch) {
     const size_t groups = source_.groupCount + 1;  // and their sum
     std::atomic<uint8_t>& state = level.states[run];
     const std::span<Rgb> kept(&level.irradiance[run * groups], groups);
@@ -89,9 +93,9 @@ void IrradianceCache::recordOf(Level& level, size_t run, Record& record, Bandwid
         state.store(kKnown, std::memory_order_release);
     } else if (!known && expected == kInTheMaking) {
         // Another thread is at it; waiting would cost as much as making it here.
-        scratch.irradiance.resize(groups);
-        make(record.photon, level.rule, record.bandwidth, scratch.irradiance, scratch);
-        record.irradiance = scratch.irradiance;
+        spare.resize(groups);
+        make(record.photon, level.rule, record.bandwidth, spare, scratch);
+        record.irradiance = spare;
         return;
     }
     record.bandwidth = level.bandwidths[run];
@@ -107,22 +111,36 @@ bool IrradianceCache::sameSurface(const DensityQuery& query, uint32_t photon, Ba
     return scratch.surface.whole() || !scratch.surface.hides(there.point.position);
 }
 
+// Whether the run's record stands for the query's point. If not, it is the record all the same if it is of the query's
+// surface.
+bool IrradianceCache::answers(Level& level, size_t run, const DensityQuery& query, Record& record,
+                              std::vector<Rgb>& spare, BandwidthScratch& scratch) {
+    const uint64_t first = run * level.photonsPerRecord;
+    const uint64_t end = std::min(first + level.photonsPerRecord, photons_.count);
+    if (first >= end) return false;
+    const auto photon = static_cast<uint32_t>((first + end) / 2);
+    if (!sameSurface(query, photon, scratch)) return false;
+    record.photon = photon;
+    record.photonsPerRecord = level.photonsPerRecord;
+    recordOf(level, run, record, spare, scratch);
+    return record.bandwidth.count >= kRunsInDisc * level.photonsPerRecord &&
+           glm::length(query.point.position - photons_.position(photon)) < kNear * record.bandwidth.radius;
+}
+
 bool IrradianceCache::nearest(const DensityQuery& query, Vec3 p, Record& record, BandwidthScratch& scratch) {
     const size_t block = nearestBlock(photons_, p);
-    for (Level& level : levels_) {
-        const size_t run = block * kBlockSize / level.photonsPerRecord;
-        const uint64_t first = run * level.photonsPerRecord;
-        const uint64_t end = std::min(first + level.photonsPerRecord, photons_.count);
-        record.photon = static_cast<uint32_t>((first + end) / 2);
-        if (!sameSurface(query, record.photon, scratch)) continue;
-        recordOf(level, run, record, scratch);
-        record.photonsPerRecord = level.photonsPerRecord;
-        const bool near =
-            glm::length(query.point.position - photons_.position(record.photon)) < kNear * record.bandwidth.radius;
-        const bool enough = near && record.bandwidth.count >= kRunsInDisc * level.photonsPerRecord;
-        if (enough || &level == &levels_.back()) return true;
-    }
-    return false;
+    for (Level& level : levels_)
+        if (answers(level, block * kBlockSize / level.photonsPerRecord, query, record, scratch.irradiance, scratch))
+            return true;
+    // Not all that ends a bandwidth is an edge: where it is chance, a neighbour tells.
+    if (record.bandwidth.count >= kRunsInDisc * kBlockSize) return true;
+    Record other;
+    for (size_t i = 1; i < kNeighbours; ++i)
+        if (answers(levels_.back(), block ^ i, query, other, scratch.neighbour, scratch)) {
+            record = other;
+            return true;
+        }
+    return record.photonsPerRecord > 0;
 }
 
 CachedLight IrradianceCache::at(const DensityQuery& query, bool wantIrradiance, BandwidthScratch& scratch) {

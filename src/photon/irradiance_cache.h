@@ -48,10 +48,13 @@ class IrradianceCache {
         std::unique_ptr<Bandwidth[]> bandwidths;
         std::unique_ptr<Rgb[]> irradiance;  // of run i and group g: [i * (groups + 1) + g]
     };
+    bool answers(Level& level, size_t run, const DensityQuery& query, Record& record, std::vector<Rgb>& spare,
+                 BandwidthScratch& scratch);
     // False: none of the query's surface is near p.
     bool nearest(const DensityQuery& query, Vec3 p, Record& record, BandwidthScratch& scratch);
     bool sameSurface(const DensityQuery& query, uint32_t photon, BandwidthScratch& scratch) const;
-    void recordOf(Level& level, size_t run, Record& record, BandwidthScratch& scratch);
+    // Into `spare` where another thread is just making it.
+    void recordOf(Level& level, size_t run, Record& record, std::vector<Rgb>& spare, BandwidthScratch& scratch);
     void make(uint32_t photon, const BandwidthRule& rule, Bandwidth& bandwidth, std::span<Rgb> irradiance,
               BandwidthScratch& scratch) const;
 
