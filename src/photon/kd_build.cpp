@@ -108,7 +108,7 @@ std::vector<Key> makeKeys(std::span<const PackedPhoton> photons, ThreadPool& poo
             const Vec3 p = photons[i].position;
             if (!validPosition(p))
                 throw Error(fmt::format("position ({}, {}, {}) of a photon: expected finite coordinates within {:g} m",
-                                        p.x, p.y, p.z, kMaxCoordinate));
+                                        p.x, p.y, p.z, kMaxPhotonCoordinate));
             // Plus 0: -0 becomes 0, so that equal photons have equal bytes.
             keys[i] = {{p.x + 0.0F, p.y + 0.0F, p.z + 0.0F}, static_cast<uint32_t>(i)};
         }
@@ -185,7 +185,7 @@ KdNode nodeOverChildren(std::span<const Child> children) {
 
 }  // namespace
 
-bool validPosition(Vec3 p) { return maxComponent(glm::abs(p)) <= kMaxCoordinate && isFinite(p); }
+bool validPosition(Vec3 p) { return maxComponent(glm::abs(p)) <= kMaxPhotonCoordinate && isFinite(p); }
 
 Bounds boundsOf(const KdNode& node) {
     Bounds bounds;

@@ -66,11 +66,11 @@ PhotonTreeView view(const PhotonTree& tree);
 
 // Sorts `photons` into a tree: a function of the multiset alone (ties are broken by comparing whole photons), for any
 // order of input and any number of threads. Throws Error beyond 2^32 - 17 photons, and if a position is not finite or
-// beyond kMaxCoordinate. The input is consumed.
+// beyond kMaxPhotonCoordinate. The input is consumed.
 PhotonTree buildPhotonTree(std::vector<PackedPhoton>&& photons, ThreadPool& pool);
 
 // Squares of distances between such coordinates stay finite in float, and kAbsentPhoton is far from all of them.
-inline constexpr float kMaxCoordinate = 1e18F;  // m
+inline constexpr float kMaxPhotonCoordinate = 1e18F;  // m
 // Finite and in range.
 bool validPosition(Vec3 p);
 

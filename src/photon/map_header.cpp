@@ -143,7 +143,7 @@ Vec3 vec3Of(const Json& value) {
     Vec3 v;
     for (int i = 0; i < 3; ++i) {
         const double coordinate = numberOf(value[static_cast<size_t>(i)], "bounds");
-        if (!(std::fabs(coordinate) <= kMaxCoordinate)) fail("bounds", value, "coordinates in range");
+        if (!(std::fabs(coordinate) <= kMaxPhotonCoordinate)) fail("bounds", value, "coordinates in range");
         v[i] = static_cast<float>(coordinate);
     }
     return v;
