@@ -37,7 +37,6 @@ struct EyePath {
     bool lastDelta = true;  // the last bend, or the camera itself
     bool metDiffuse = false;
     bool endsAtDiffuse = false;  // the map owns what reaches a diffuse lobe of this vertex, but for direct light
-    float lightSamples = 1;      // light samples taken there
     float bsdfSamples = 1;       // directions sampled at the last non-delta vertex, for MIS
 
     // Nothing goes on from v but a look for emitters.
@@ -155,11 +154,14 @@ void EyeTracer::addEmission(const Vertex& v, const EyePath& path, EyeScratch& sc
     scratch.sums.contribute(layers_, path.state.throughput * radiance * weight, layers_.filter().light(), path.mask);
 }
 
+int EyeTracer::lightSamples(const EyePath& path) const {
+    return settings_.quarterLights && !path.metDiffuse && !lights_.onePoint() ? kQuarters : 1;
+}
+
 void EyeTracer::addDirect(const Vertex& v, EyePath& path, EyeScratch& scratch) const {
     DirectLightQuery query;
-    const int samples = settings_.quarterLights && !path.metDiffuse && !lights_.onePoint() ? kQuarters : 1;
-    path.lightSamples = static_cast<float>(samples);
-    query.bsdfSamples = path.bsdfSamples / path.lightSamples;
+    const int samples = lightSamples(path);
+    query.bsdfSamples = path.bsdfSamples / static_cast<float>(samples);
     query.glossy = photons_ == nullptr || path.walk.samplesLight(glossyClass(v.bsdf));
     EyePathState diffuse = path.mask, glossy = path.mask;
     layers_.filter().prepend(diffuse, Event::Diffuse);
@@ -173,10 +175,10 @@ void EyeTracer::addDirect(const Vertex& v, EyePath& path, EyeScratch& scratch) c
         query.glossy &= layers_.counts(layers_.filter().accepted(light, glossy));
     }
     if (!query.diffuse && !query.glossy) return;
-    const Rgb throughput = path.state.throughput / path.lightSamples;
+    const Rgb throughput = path.state.throughput / static_cast<float>(samples);
     for (int i = 0; i < samples; ++i) {
         const Vec2 onLight = samples == 1 ? u : inQuarter(u, i);
-        const float which = rotated(uLight, static_cast<float>(i) / path.lightSamples);
+        const float which = rotated(uLight, static_cast<float>(i) / static_cast<float>(samples));
         const DirectLight d = sampleDirectLight(scene_, lights_, v, query, which, onLight, scratch.walk);
         LightPathState arriving = light;
         for (int k = 0; k < d.straightPassages; ++k) layers_.filter().append(arriving, Event::Specular);
@@ -283,8 +285,8 @@ bool EyeTracer::bounce(const Vertex& v, EyePath& path, EyeScratch& scratch) cons
     for (int i = 1; i < branches; ++i) {
         EyePath branch = path;
         branch.sampler = path.sampler.fork(static_cast<uint32_t>(i));
-        const float x = u.x + static_cast<float>(i) / static_cast<float>(branches);
-        if (sampleBsdf(v.bsdf, v.wo, uLobe, {x < 1 ? x : x - 1, u.y}, sample) && step(v, sample, branch))
+        const float x = rotated(u.x, static_cast<float>(i) / static_cast<float>(branches));
+        if (sampleBsdf(v.bsdf, v.wo, uLobe, {x, u.y}, sample) && step(v, sample, branch))
             scratch.branches.push_back(branch);
     }
     return sampleBsdf(v.bsdf, v.wo, uLobe, u, sample) && step(v, sample, path);
@@ -322,8 +324,7 @@ bool EyeTracer::step(const Vertex& v, const BsdfSample& sample, EyePath& path) c
             const BsdfEval f = evalBsdf(v.bsdf, v.wo, sample.wi);
             path.misPdf = sample.event == Event::Diffuse ? f.diffuse.pdfW : f.glossy.pdfW;
         }
-        path.misPdf *= path.bsdfSamples / path.lightSamples;
-        path.lightSamples = 1;
+        path.misPdf *= path.bsdfSamples / static_cast<float>(lightSamples(path));
         path.bsdfSamples = 1;
         path.metDiffuse |= c == VertexClass::Diffuse;
     }

@@ -55,6 +55,7 @@ class EyeTracer {
     void follow(EyePath& path, EyeScratch& scratch) const;
     void recordFirst(const Vertex& v, SampleSums& sums) const;
     void addEmission(const Vertex& v, const EyePath& path, EyeScratch& scratch) const;
+    int lightSamples(const EyePath& path) const;  // at a vertex that the path has come to
     void addDirect(const Vertex& v, EyePath& path, EyeScratch& scratch) const;
     bool indirectFromMap(const Vertex& v) const;
     void addPhotons(const Vertex& v, const EyePath& path, EyeScratch& scratch) const;

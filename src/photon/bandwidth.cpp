@@ -45,12 +45,6 @@ struct Ring {
     }
 };
 
-// In even light the power around the middle balances. On an edge it does not, at whatever radius, where comparing discs
-// with each other shows nothing: each is half lit.
-bool isLopsided(const Ring& within) {
-    return glm::dot(within.moment, within.moment) > square(kBalanceTolerance) * within.ppd2;
-}
-
 struct Estimate {
     double value = 0, variance = 0;
 };
@@ -88,7 +82,8 @@ class RadiusSearch {
             if (level > 0 && square(ring.p - within.p) > square(kRingTolerance) * (ring.pp + within.pp))
                 return atLevel(level - 1, within.count);
             within.add(ring);
-            if (level > 0 && scratch_.surface.whole() && isLopsided(within))
+            // On an edge discs agree with each other at whatever radius: each is half lit.
+            if (level > 0 && scratch_.surface.whole() && liesToOneSide(within.moment, within.ppd2, kBalanceTolerance))
                 return atLevel(level - 1, within.count - ring.count);
             Estimate& e = estimates[static_cast<size_t>(level)];
             e = estimateOf(within, r2, scratch_.surface.share(std::min(std::sqrt(r2), query_.maxRadius)));

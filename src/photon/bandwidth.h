@@ -35,6 +35,7 @@ DensityQuery queryAt(const PhotonSource& source, uint32_t photon);
 struct BandwidthScratch {
     DensityScratch density;  // accepted: afterwards all that lie within the bandwidth, and some more
     SurfaceAround surface;   // about the photon
+    // Records that another thread is just making: that of a place, and one of its neighbours.
     std::vector<Rgb> irradiance, neighbour;
 };
 
@@ -45,7 +46,8 @@ struct Bandwidth {
 
 // The largest of the radii r0, sqrt(2) r0, 2 r0, ... (r0: distance to photon number leastCount) whose estimate is
 // consistent with those of all smaller ones: |E_i - E_j| <= tolerance * standard error of E_i (Lepski 1991), before
-// which it ends where the power in the outer ring is plainly another, or a few photons there lie far denser. Where
+// which it ends where the power in the outer ring is plainly another, a few photons there lie far denser, or the power
+// within lies to one side. Where
 // light is smooth the radius grows as long as it pays, at edges it stays small. The photon itself is left out: it is
 // there for certain.
 Bandwidth consistentBandwidth(const PhotonSource& source, uint32_t photon, const BandwidthRule& rule,

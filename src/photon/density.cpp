@@ -59,7 +59,7 @@ constexpr float kBeyondLast = 1.15F;
 constexpr size_t kWasteful = 4;
 
 // Standard errors by which photons in a disc may lie to one side by chance.
-constexpr float kBalanceTolerance = 2;
+constexpr double kBalanceTolerance = 2;
 
 constexpr size_t kLanes = 8;
 // Up to about this many, comparing each with each is faster than buckets.
@@ -123,13 +123,13 @@ float balancedRadiusSquared(const PhotonTreeView& tree, const DensityQuery& quer
     const float least = square(query.minRadius);
     for (; radiusSquared > least; radiusSquared = std::max(least, radiusSquared / 2)) {
         Vec3 moment(0);
-        float moments = 0;
+        float squares = 0;
         for (const DensityScratch::Candidate& c : scratch.accepted) {
             if (!(c.entrySquared < radiusSquared)) continue;
             moment += tree.position(c.index) - query.point.position;
-            moments += c.distanceSquared;
+            squares += c.distanceSquared;
         }
-        if (!(glm::dot(moment, moment) > square(kBalanceTolerance) * moments)) break;
+        if (!liesToOneSide(moment, squares, kBalanceTolerance)) break;
     }
     return radiusSquared;
 }

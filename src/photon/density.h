@@ -62,6 +62,12 @@ void acceptPhotons(const PhotonTreeView& tree, const DensityQuery& query, float 
 // Square of the smallest radius that holds `count` of the accepted (the last one on its rim), all closer than `radius`.
 float radiusSquaredHolding(uint32_t count, float radius, DensityScratch& scratch);
 
+// Whether what lies around a middle lies to one side: `moment` is the sum of weight times offset from it, `squares`
+// that of (weight times distance)^2, and `tolerance` the standard errors that chance may reach.
+inline bool liesToOneSide(Vec3 moment, double squares, double tolerance) {
+    return glm::dot(moment, moment) > square(tolerance) * squares;
+}
+
 // Square of the radius, halved until the photons in it do not lie to one side, or it is the least (m).
 float balancedRadiusSquared(const PhotonTreeView& tree, const DensityQuery& query, float radiusSquared,
                             const DensityScratch& scratch);

@@ -22,11 +22,11 @@ constexpr uint32_t kRunsInDisc = 8;
 // Records that are dense must be cheap: a bound on their photons, between that need and what the rule asks for.
 constexpr uint32_t mostCountOf(uint32_t photonsPerRecord) { return 31 * photonsPerRecord + 512; }
 
-// Blocks that may tell of each other: those of a run.
-constexpr size_t kNeighbours = 4;
-
 // And for a point that is closer than this share of the disc's radius.
 constexpr float kNear = 0.4F;
+
+// Blocks that may tell of each other: those of a run.
+constexpr size_t kNeighbours = 4;
 
 // Weight of the photon at which a record is. With it, which is there for certain, the mean over all photons would be
 // too high by two photons in the disc; without it, records are unbiased where each is asked as often as the other. But

@@ -79,7 +79,6 @@ class Sorter {
 
     // The `left` smallest along the axis come first.
     void cutAlong(size_t axis, std::span<Key> keys, size_t left) const {
-        if (left >= keys.size()) return;
         std::nth_element(keys.begin(), keys.begin() + static_cast<ptrdiff_t>(left), keys.end(),
                          [this, axis](const Key& a, const Key& b) {
                              if (a.position[axis] != b.position[axis]) return a.position[axis] < b.position[axis];

@@ -81,6 +81,16 @@ class BlockSearch {
 
     BlockSearch(const PhotonTreeView& tree, Vec3 p) : tree_(tree), shape_(tree.count), point_(p.x, p.y, p.z, 0) {}
 
+    // The block that the least box of each level leads to: not always the nearest, at a fraction of the cost.
+    Found guess() {
+        uint32_t node = 0;
+        for (auto level = static_cast<size_t>(shape_.levels); level-- > 0;)
+            node = kNodeWidth * node +
+                   lanes::leastLane(lanes::distanceToBoxes(tree_.nodes[shape_.first[level] + node], point_));
+        lookAt(node);
+        return found_;
+    }
+
     Found run() {
         descend(static_cast<size_t>(shape_.levels) - 1, 0);
         return found_;
@@ -105,7 +115,7 @@ class BlockSearch {
     }
     void lookAt(uint32_t block) {
         const __m256 d = _mm256_min_ps(lanes::distanceToPhotons(tree_.blocks[block], 0, point_),
-                                       lanes::distanceToPhotons(tree_.blocks[block], kNodeWidth, point_));
+                                       lanes::distanceToPhotons(tree_.blocks[block], kBlockSize / 2, point_));
         alignas(32) std::array<float, kNodeWidth> distances;
         _mm256_store_ps(distances.data(), d);
         const float least = distances[lanes::leastLane(d)];
@@ -159,7 +169,7 @@ uint32_t nearestBlock(const PhotonTreeView& tree, Vec3 p) { return BlockSearch(t
 
 float guessRadius(const PhotonTreeView& tree, Vec3 centre, uint32_t count) {
     if (tree.count == 0 || !isFinite(centre)) return 1;
-    const BlockSearch::Found found = BlockSearch(tree, centre).run();
+    const BlockSearch::Found found = BlockSearch(tree, centre).guess();
     const std::array<float, 3> side = sidesOf(tree, found.block);
     const float disc = std::sqrt(kSurplus * static_cast<float>(count) * areaOf(side) / (kPi * kBlockSize));
     // Without area (one photon, or all in a row), any positive number will do, and grows.

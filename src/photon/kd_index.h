@@ -83,7 +83,7 @@ Bounds boundsOf(const KdNode& node);
 uint32_t nearestBlock(const PhotonTreeView& tree, Vec3 p);
 // Of the block's box, by its two longer sides: photons lie on surfaces. m2.
 float boxArea(const PhotonTreeView& tree, uint32_t block);
-// A positive radius that holds perhaps somewhat more than `count` photons, by the density of the nearest block.
+// A positive radius that holds perhaps somewhat more than `count` photons, by the density of a block near by.
 float guessRadius(const PhotonTreeView& tree, Vec3 centre, uint32_t count);
 // The next radius to try where `found` of `wanted` photons were in this one.
 float grownRadius(float radius, uint64_t wanted, uint64_t found);

@@ -50,10 +50,13 @@ bool clipToSlab(Vec3 a, Vec3 b, float thickness, Vec2& from, Vec2& to) {
     return true;
 }
 
+// Signed, of the triangle of a, b and the centre.
+float twiceArea(Vec2 a, Vec2 b) { return a.x * b.y - a.y * b.x; }
+
 // Shortens each direction's reach (in radii) to where it meets the segment.
 void cut(Vec2 a, Vec2 b, std::array<float, kDirections>& reach) {
     const Vec2 d = b - a;
-    const float area = a.x * b.y - a.y * b.x;  // twice the triangle's with the centre
+    const float area = twiceArea(a, b);
     for (size_t i = 0; i < kDirections; ++i) {
         const Direction w = directions()[i];
         const float sideA = w.x * a.y - w.y * a.x, sideB = w.x * b.y - w.y * b.x;
@@ -128,7 +131,7 @@ void SurfaceAround::add(Vec2 a, Vec2 b) {
     c.ay[lane] = a.y;
     c.bx[lane] = b.x;
     c.by[lane] = b.y;
-    c.area[lane] = a.x * b.y - a.y * b.x;
+    c.area[lane] = twiceArea(a, b);
 }
 
 void SurfaceExtent::around(Vec3 centre, Vec3 normal, float radius, SurfaceAround& out) const {

@@ -18,8 +18,8 @@ inline constexpr size_t kMaxCasters = 16;
 
 Sphere boundingSphereOf(const Mesh& mesh);
 
-// At most `limit` spheres around groups of casters: the largest
-// group is halved across its longest side until there are enough.
+// At most `limit` spheres around groups of casters: the largest group is halved across its longest side until there are
+// enough.
 std::vector<Caster> groupCasters(std::vector<Sphere> spheres, size_t limit);
 
 }  // namespace lsde

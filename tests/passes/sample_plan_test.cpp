@@ -32,6 +32,22 @@ std::vector<SampleStatistics> halfNoisy() {
     return all;
 }
 
+// Of pixels of mean 1 and a sigma of .25 on the left, of .5 from column 20 on.
+SamplePlan planOfTwoSigmas() {
+    std::vector<SampleStatistics> statistics(kPixels, withSigma(1, 0.25F));
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 20; x < kWidth; ++x) statistics[at(x, y)] = withSigma(1, 0.5F);
+    SamplePlan plan(kWidth, kHeight);
+    plan.adapt(statistics);
+    return plan;
+}
+
+double meanRate(const SamplePlan& plan) {
+    double sum = 0;
+    for (size_t i = 0; i < kPixels; ++i) sum += plan.rate(i);
+    return sum / kPixels;
+}
+
 }  // namespace
 
 TEST_CASE("noisy pixels get more samples, all together as many as asked for") {
@@ -45,6 +61,7 @@ TEST_CASE("noisy pixels get more samples, all together as many as asked for") {
         for (uint64_t n = 1; n < 100; ++n) REQUIRE(plan.count(i, n) >= plan.count(i, n - 1));
     }
     CHECK(static_cast<double>(total) / kPixels == doctest::Approx(64).epsilon(0.04));
+    CHECK(meanRate(plan) == doctest::Approx(1).epsilon(0.001));
     CHECK(plan.rate(at(15, 15)) > 3 * plan.rate(at(30, 15)));
 }
 
@@ -78,6 +95,7 @@ TEST_CASE("the samples asked for are given however few pixels are noisy") {
         double total = 0;
         for (size_t i = 0; i < kPixels; ++i) total += static_cast<double>(plan.count(i, 64));
         CHECK(total / kPixels == doctest::Approx(64).epsilon(0.04));
+        CHECK(meanRate(plan) == doctest::Approx(1).epsilon(0.001));
     }
 }
 
@@ -97,20 +115,12 @@ TEST_CASE("among the others a pixel's own values move no share but its neighbour
 }
 
 TEST_CASE("samples go by the standard deviation, of equal means") {
-    std::vector<SampleStatistics> statistics(kPixels, withSigma(1, 0.25F));
-    for (int y = 0; y < kHeight; ++y)
-        for (int x = 20; x < kWidth; ++x) statistics[at(x, y)] = withSigma(1, 0.5F);
-    SamplePlan plan(kWidth, kHeight);
-    plan.adapt(statistics);
+    const SamplePlan plan = planOfTwoSigmas();
     CHECK(plan.rate(at(35, 9)) / plan.rate(at(5, 9)) == doctest::Approx(2).epsilon(0.001));
 }
 
 TEST_CASE("counts are powers of two whose mean is the pixel's rate") {
-    std::vector<SampleStatistics> statistics(kPixels, withSigma(1, 0.25F));
-    for (int y = 0; y < kHeight; ++y)
-        for (int x = 20; x < kWidth; ++x) statistics[at(x, y)] = withSigma(1, 0.5F);
-    SamplePlan plan(kWidth, kHeight);
-    plan.adapt(statistics);
+    const SamplePlan plan = planOfTwoSigmas();
     for (const uint64_t samples : {13, 47, 100, 3000}) {
         CAPTURE(samples);
         double left = 0, right = 0;

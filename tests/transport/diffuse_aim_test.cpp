@@ -39,6 +39,11 @@ Vertex floorAt(Vec3 position, bool fromBelow) {
 constexpr DiffuseBsdf kGrey{Rgb(0.5F)};
 constexpr int kTests = 4;
 
+bool sampleOnce(const DiffuseAim& aim, const Vertex& v, Sampler sampler, DiffuseAim::Direction& direction) {
+    const float uChoice = sampler.next();
+    return aim.sample(v, kGrey, uChoice, sampler.next2D(), direction);
+}
+
 }  // namespace
 
 TEST_CASE("directions aimed from a diffuse surface have the density of the mixture") {
@@ -95,11 +100,9 @@ TEST_CASE("the mean weight is 1 on both sides, in a caster's sphere and beside c
             const Vertex v = floorAt(p, fromBelow);
             test::Mean weight;
             for (uint64_t i = 0; i < 100'000; ++i) {
-                Sampler s = Sampler::sequence(i, Stage::Test, 1);
                 DiffuseAim::Direction d;
-                const float uChoice = s.next();
                 // Directions below the horizon carry nothing: the others make up for them.
-                const bool goesOn = aim.sample(v, kGrey, uChoice, s.next2D(), d);
+                const bool goesOn = sampleOnce(aim, v, Sampler::sequence(i, Stage::Test, 1), d);
                 weight.add(goesOn ? static_cast<double>(d.weight) : 0);
                 if (goesOn) REQUIRE(d.sample.wi.z * v.wo.z > 0);
             }
@@ -120,10 +123,8 @@ TEST_CASE("more casters than are aimed at one by one are aimed at in groups") {
     const Vertex v = floorAt({0.3F, 0, 0.1F}, false);
     test::Mean weight, aimed;
     for (uint64_t i = 0; i < 50'000; ++i) {
-        Sampler s = Sampler::sequence(i, Stage::Test, 2);
         DiffuseAim::Direction d;
-        const float uChoice = s.next();
-        const bool goesOn = aim.sample(v, kGrey, uChoice, s.next2D(), d);
+        const bool goesOn = sampleOnce(aim, v, Sampler::sequence(i, Stage::Test, 2), d);
         weight.add(goesOn ? static_cast<double>(d.weight) : 0);
         aimed.add(d.aimed ? 1 : 0);
     }
@@ -140,10 +141,8 @@ TEST_CASE("nothing is aimed at a sphere around the point, nor at one below the h
         const Vertex v = floorAt(p, fromBelow);
         int aimed = 0;
         for (uint64_t i = 0; i < 1000; ++i) {
-            Sampler s = Sampler::sequence(1, Stage::Test, i);
             DiffuseAim::Direction d;
-            const float uChoice = s.next();
-            if (!aim.sample(v, kGrey, uChoice, s.next2D(), d)) d.aimed = true;
+            if (!sampleOnce(aim, v, Sampler::sequence(1, Stage::Test, i), d)) d.aimed = true;
             aimed += d.aimed ? 1 : 0;
             if (!d.aimed) CHECK(d.weight > 0);
         }
