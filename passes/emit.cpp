@@ -24,12 +24,12 @@ Emission::Emission(const Scene& scene, const EmitSettings& settings, RunContext&
       settings_(settings),
       seed_(run.seed),
       sources_(scene, scene.lightSelection(settings.lights), settings.aim, wholeShareFor(settings.store)),
-      diffuseAim_(scene, settings.aim ? kPilotDiffuseAimShare : 0),
+      diffuseAim_(scene, settings.aim ? kPilotDiffuseBoost : 0),
       tracer_{scene_, sources_, diffuseAim_, settings_.store, settings_.maxDepth, seed_},
       ledger_(scene.lights().size(), scene.objects().size()) {
     const PilotFindings found = pilotEmission(tracer_, run.pool);
     tracer_.fairPower = found.fairPower;
-    if (settings_.aim) diffuseAim_ = DiffuseAim(scene, found.diffuseAimShare);
+    if (settings_.aim) diffuseAim_ = DiffuseAim(scene, found.diffuseBoost);
 }
 
 void Emission::trace(uint64_t next, uint64_t count, RunContext& run) {

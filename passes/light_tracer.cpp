@@ -47,8 +47,8 @@ class LightTracer {
         LightWalkClass walk;
         PathCode code;
         uint32_t depth = 0;
-        bool unaimed = false;  // left a Lambertian surface by its own lobe
-        float aimWeight = 1;   // product of the weights of directions aimed since the light met a D
+        bool unaimed = false;       // left a Lambertian surface by its own lobe
+        bool aimedDiffuse = false;  // aimed since the light met a D
     };
 
     void enter(LedgerColumn column, Rgb power) { out_.ledger[column] += FixedRgb(power); }
@@ -64,10 +64,12 @@ class LightTracer {
             const uint64_t raysBefore = scratch_.rays;
             Vertex v;
             const bool arrives = advance(in_.scene, path.state, v, scratch_);
-            if (path.walk.metDiffuse()) out_.raysAfterDiffuse += scratch_.rays - raysBefore;
+            if (path.walk.metDiffuse())
+                (path.aimedDiffuse ? out_.afterDiffuse.aimedRays : out_.afterDiffuse.rays) +=
+                    scratch_.rays - raysBefore;
             if (path.unaimed) {
-                ++out_.unaimedBounces;
-                out_.unaimedEscaped += arrives ? 0 : 1;
+                ++out_.afterDiffuse.bounces;
+                out_.afterDiffuse.escaped += arrives ? 0 : 1;
                 path.unaimed = false;
             }
             if (!arrives) {
@@ -118,15 +120,19 @@ class LightTracer {
         out_.photons[static_cast<size_t>(c)].push_back(pack(photon));
     }
 
-    // Light goes on from a Lambertian surface as so many paths that each carries a fair power, none or several: most
-    // paths are aimed at casters and carry little when they land, those that are not carry much. What is aimed here is
-    // meant to carry less.
+    // Light goes on from a Lambertian surface as so many paths that each carries a fair power, none or several, and
+    // towards casters as so many more that each carries less. What these light in turn goes on with the fair power: the
+    // number of paths is bounded by the power there is.
     void scatterFairly(const Vertex& v, const DiffuseBsdf& lambert, LightPath& path) {
         const Rgb arriving = path.state.throughput;
-        const float fair = maxComponent(arriving * lambert.albedo) / (in_.fairPower * path.aimWeight);
-        const float copies = std::min(fair, kMostCopies);
+        const DiffuseAim::At aim = in_.diffuseAim.at(v, lambert);
+        const float fair = maxComponent(arriving * lambert.albedo) / in_.fairPower;
+        const float lobe = std::min(fair, kMostCopies), copies = lobe * aim.effort();
         const auto count = static_cast<uint32_t>(copies + path.sampler.next());
         const Rgb each = arriving / copies;
+        out_.afterDiffuse.lobePaths += static_cast<double>(lobe);
+        if (aim.share() > 0) out_.afterDiffuse.seeingPaths += static_cast<double>(lobe);
+        out_.afterDiffuse.inCones += static_cast<double>(lobe * aim.share());
         enter(LedgerColumn::Roulette, arriving);
         ++path.depth;
         for (uint32_t i = 0; i < count; ++i) {
@@ -134,24 +140,25 @@ class LightTracer {
             LightPath copy = path;
             if (count > 1) copy.sampler = path.sampler.fork(i);
             copy.state.throughput = each;
-            if (leaveLambertian(v, lambert, copy)) waiting_.push_back(copy);
+            if (leaveLambertian(v, lambert, aim, copy)) waiting_.push_back(copy);
         }
     }
 
     // False: the path ended, and its power has been entered.
-    bool leaveLambertian(const Vertex& v, const DiffuseBsdf& lambert, LightPath& path) {
+    bool leaveLambertian(const Vertex& v, const DiffuseBsdf& lambert, const DiffuseAim::At& aim, LightPath& path) {
         const Rgb arriving = path.state.throughput;
         const float uChoice = path.sampler.next();
         DiffuseAim::Direction next;
         const Rgb scattered = arriving * lambert.albedo;
         move(LedgerColumn::AbsorbedSurface, arriving, scattered);
-        if (!in_.diffuseAim.sample(v, lambert, uChoice, path.sampler.next2D(), next)) {
+        if (!aim.sample(uChoice, path.sampler.next2D(), next)) {
             enter(LedgerColumn::Sampling, scattered);
             return false;
         }
-        next.sample.weight = lambert.albedo * next.weight;
-        path.aimWeight *= next.weight;
+        next.sample.weight = lambert.albedo * (aim.effort() * next.weight);
         path.unaimed = !next.aimed;
+        path.aimedDiffuse |= next.aimed;
+        out_.afterDiffuse.aimedBounces += next.aimed ? 1 : 0;
         move(LedgerColumn::Sampling, scattered, arriving * next.sample.weight);
         return leave(v, next.sample, path);
     }
@@ -219,35 +226,54 @@ std::string_view name(Store store) {
     return kNames[static_cast<size_t>(store)];
 }
 
+AfterDiffuse& AfterDiffuse::operator+=(const AfterDiffuse& other) {
+    rays += other.rays;
+    aimedRays += other.aimedRays;
+    bounces += other.bounces;
+    aimedBounces += other.aimedBounces;
+    escaped += other.escaped;
+    lobePaths += other.lobePaths;
+    seeingPaths += other.seeingPaths;
+    inCones += other.inCones;
+    return *this;
+}
+
 PilotFindings pilotEmission(LightTracerInput input, ThreadPool& pool) {
     constexpr uint64_t kPaths = 8192, kPathsPerChunk = 512;
-    constexpr float kLeastAimed = 0.25F, kMostAimed = 0.9F;
+    // Of light that met a D, the share of rays that follow what is aimed at casters: as much as escapes unaimed.
+    constexpr double kLeastAimed = 0.25, kMostAimed = 0.9;
     // Rays of light that met a D, for each other ray: as its flux is to that of caustics, within bounds.
     constexpr double kLeastRaysAfterDiffuse = 0.25, kMostRaysAfterDiffuse = 2;
+    constexpr uint64_t kRaysOfAimed = 4;  // where none was seen
     input.fairPower = input.sources.fairPower();
-    if (input.store == Store::Caustic) return {input.fairPower, kPilotDiffuseAimShare};
+    if (input.store == Store::Caustic) return {input.fairPower, kPilotDiffuseBoost};
     input.stage = Stage::EmissionPilot;
     std::vector<LightPaths> results(kPaths / kPathsPerChunk);
     pool.forEach(results.size(),
                  [&](size_t i) { results[i] = traceLightPaths(input, i * kPathsPerChunk, (i + 1) * kPathsPerChunk); });
-    LightPaths sum;
-    sum.ledger = Ledger(input.scene.lights().size(), input.scene.objects().size());
+    Ledger ledger(input.scene.lights().size(), input.scene.objects().size());
+    AfterDiffuse after;
+    uint64_t rays = 0;
     for (const LightPaths& paths : results) {
-        sum.ledger.merge(paths.ledger);
-        sum.rays += paths.rays;
-        sum.raysAfterDiffuse += paths.raysAfterDiffuse;
-        sum.unaimedBounces += paths.unaimedBounces;
-        sum.unaimedEscaped += paths.unaimedEscaped;
+        ledger.merge(paths.ledger);
+        after += paths.afterDiffuse;
+        rays += paths.rays;
     }
-    const double caustic = sum.ledger.fluxOf(static_cast<size_t>(PhotonClass::Caustic));
-    const double indirect = sum.ledger.fluxOf(static_cast<size_t>(PhotonClass::Indirect));
+    const double caustic = ledger.fluxOf(static_cast<size_t>(PhotonClass::Caustic));
+    const double indirect = ledger.fluxOf(static_cast<size_t>(PhotonClass::Indirect));
     const double share = caustic > 0 ? std::clamp(indirect / caustic, kLeastRaysAfterDiffuse, kMostRaysAfterDiffuse)
                                      : kMostRaysAfterDiffuse;
-    const double wanted = share * static_cast<double>(sum.rays - sum.raysAfterDiffuse);
-    const double fairer = std::clamp(static_cast<double>(sum.raysAfterDiffuse) / std::max(1.0, wanted), 1.0 / 64, 4.0);
-    const float escape =
-        static_cast<float>(sum.unaimedEscaped) / static_cast<float>(std::max<uint64_t>(1, sum.unaimedBounces));
-    return {input.fairPower * static_cast<float>(fairer), std::clamp(escape, kLeastAimed, kMostAimed)};
+    const auto unaimed = static_cast<double>(after.rays);
+    const double wanted = share * static_cast<double>(rays - after.aimedRays - after.rays);
+    const double escaped = static_cast<double>(after.escaped) / std::max<double>(1, static_cast<double>(after.bounces));
+    const double aimedShare = std::clamp(escaped, kLeastAimed, kMostAimed);
+    const double seeing = after.seeingPaths / std::max(after.lobePaths, 1e-30);
+    const double aimed = unaimed * seeing * aimedShare / (1 - aimedShare);
+    const double fairer = std::clamp((unaimed + aimed) / std::max(1.0, wanted), 1.0 / 64, 4.0);
+    const double raysOfAimed =
+        static_cast<double>(after.aimedRays + kRaysOfAimed) / static_cast<double>(after.aimedBounces + 1);
+    const double boost = aimed > 0 ? aimed / (after.inCones * raysOfAimed) : 0;
+    return {input.fairPower * static_cast<float>(fairer), static_cast<float>(boost)};
 }
 
 LightPaths traceLightPaths(const LightTracerInput& input, uint64_t begin, uint64_t end) {

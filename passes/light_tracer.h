@@ -38,22 +38,32 @@ struct LightTracerInput {
     Stage stage = Stage::Emission;
 };
 
+// Of light that left a Lambertian surface: towards casters (aimed) and by the surface's own lobe.
+struct AfterDiffuse {
+    uint64_t rays = 0, aimedRays = 0;  // and of what followed
+    uint64_t bounces = 0, aimedBounces = 0;
+    uint64_t escaped = 0;  // of bounces
+    // Expected paths of the lobes alone: all, from where a caster's cone is seen, and into the cones.
+    double lobePaths = 0, seeingPaths = 0, inCones = 0;
+
+    AfterDiffuse& operator+=(const AfterDiffuse& other);
+};
+
 // What some paths came to, merged by sums that do not depend on the order.
 struct LightPaths {
     std::array<std::vector<PackedPhoton>, kPhotonClasses> photons;
     Ledger ledger;
     uint64_t rays = 0;
-    uint64_t raysAfterDiffuse = 0;                    // of them
-    uint64_t unaimedBounces = 0, unaimedEscaped = 0;  // from Lambertian surfaces, by their own lobe
+    AfterDiffuse afterDiffuse;
 };
 
 // What a pilot finds out, whose photons are discarded: a function of scene, settings and seed.
 struct PilotFindings {
-    float fairPower = 0;        // W: light that met a D then takes as many rays as its share is
-    float diffuseAimShare = 0;  // of the directions from diffuse surfaces: many where those of the lobe escape
+    float fairPower = 0;     // W: light that met a D then takes as many rays as its share is
+    float diffuseBoost = 0;  // of directions towards casters from diffuse surfaces: more where those of the lobe escape
 };
 PilotFindings pilotEmission(LightTracerInput input, ThreadPool& pool);
-inline constexpr float kPilotDiffuseAimShare = 0.5F;
+inline constexpr float kPilotDiffuseBoost = 4;
 
 // Paths [begin, end) of the emission.
 LightPaths traceLightPaths(const LightTracerInput& input, uint64_t begin, uint64_t end);

@@ -1,72 +1,59 @@
 #include "transport/diffuse_aim.h"
 
-#include <array>
+#include <algorithm>
 
 #include "sampling/warp.h"
-#include "scene/casters.h"
-#include "transport/cone.h"
 
 namespace lsde {
 
-// The cones as a point sees them, and the probability of each. What a sphere around the point is aimed at by the lobe.
-struct DiffuseAim::Parts {
-    std::array<Cone, kMaxCasters> cone;
-    std::array<float, kMaxCasters> probability{};
-    float aimed = 0;  // sum of the probabilities
-};
+// From beside a small caster most paths would go there, and few anywhere else: at most so many for one of the lobe's.
+constexpr float kMostAimedPaths = 32;
 
-DiffuseAim::DiffuseAim(const Scene& scene, float aimedShare) : aimedShare_(aimedShare) {
-    if (!(aimedShare > 0)) return;
+DiffuseAim::DiffuseAim(const Scene& scene, float boost) : boost_(boost) {
     for (const Caster& caster : scene.casters()) casters_.push_back(caster.bounds);
 }
 
-DiffuseAim::Parts DiffuseAim::partsAt(const Vertex& v) const {
-    Parts parts;
+DiffuseAim::At DiffuseAim::at(const Vertex& v, const DiffuseBsdf& bsdf) const {
+    At at(v, bsdf, boost_);
     const Vec3 normal = v.wo.z < 0 ? -v.surface.ns : v.surface.ns;
-    float total = 0;
-    for (size_t i = 0; i < casters_.size(); ++i) {
-        parts.cone[i] = coneTo(casters_[i], v.surface.position);
-        parts.probability[i] = cosineShare(parts.cone[i], normal);
-        total += parts.probability[i];
+    for (const Sphere& caster : casters_) {
+        const Cone cone = coneTo(caster, v.surface.position);
+        // What a sphere around the point is aimed at by the lobe.
+        const float share = cone.everything ? 0 : cosineShare(cone, normal);
+        if (!(share > 0)) continue;
+        at.cones_[at.count_] = cone;
+        at.shares_[at.count_++] = share;
+        at.share_ += share;
     }
-    if (!(total > 0)) return parts;
-    for (size_t i = 0; i < casters_.size(); ++i) {
-        float& p = parts.probability[i];
-        p = parts.cone[i].everything ? 0 : p * (aimedShare_ / total);
-        parts.aimed += p;
-    }
-    return parts;
+    if (at.share_ > 0) at.boost_ = std::min(boost_, kMostAimedPaths / at.share_);
+    return at;
 }
 
-float DiffuseAim::mixturePdf(const Parts& parts, float lobePdf, Vec3 direction) const {
-    float pdf = (1 - parts.aimed) * lobePdf;
-    for (size_t i = 0; i < casters_.size(); ++i)
-        if (parts.probability[i] > 0 && within(parts.cone[i], direction))
-            pdf += parts.probability[i] * conePdf(parts.cone[i].oneMinusCos);
-    return pdf;
+float DiffuseAim::At::pathDensity(float lobePdf, Vec3 direction) const {
+    float density = 0;
+    for (size_t i = 0; i < count_; ++i)
+        if (within(cones_[i], direction)) density += shares_[i] * conePdf(cones_[i].oneMinusCos);
+    return lobePdf + boost_ * density;
 }
 
-bool DiffuseAim::sample(const Vertex& v, const DiffuseBsdf& bsdf, float uChoice, Vec2 u, Direction& out) const {
-    const Parts parts = partsAt(v);
-    size_t chosen = 0;
-    for (; chosen < casters_.size(); ++chosen) {
-        if (uChoice < parts.probability[chosen]) break;
-        uChoice -= parts.probability[chosen];
-    }
-    out.aimed = chosen < casters_.size();
-    if (!bsdf.sample(v.wo, u, out.sample)) return false;
+bool DiffuseAim::At::sample(float uChoice, Vec2 u, Direction& out) const {
+    float left = uChoice * effort() - 1;  // below 0: the lobe
+    out.aimed = left >= 0 && count_ > 0;
+    if (!bsdf_.sample(v_.wo, u, out.sample)) return false;
     if (out.aimed) {
-        const Cone& cone = parts.cone[chosen];
-        out.sample.wi = v.frame.toLocal(Frame(cone.axis).toWorld(squareToCone(u, cone.oneMinusCos)));
-        if (out.sample.wi.z * v.wo.z <= 0) return false;
-        out.sample.pdfW = bsdf.eval(v.wo, out.sample.wi).diffuse.pdfW;
+        size_t chosen = 0;
+        while (chosen + 1 < count_ && left >= boost_ * shares_[chosen]) left -= boost_ * shares_[chosen++];
+        const Cone& cone = cones_[chosen];
+        out.sample.wi = v_.frame.toLocal(Frame(cone.axis).toWorld(squareToCone(u, cone.oneMinusCos)));
+        if (out.sample.wi.z * v_.wo.z <= 0) return false;
+        out.sample.pdfW = bsdf_.eval(v_.wo, out.sample.wi).diffuse.pdfW;
     }
-    out.weight = out.sample.pdfW / mixturePdf(parts, out.sample.pdfW, v.frame.toWorld(out.sample.wi));
+    out.weight = out.sample.pdfW / pathDensity(out.sample.pdfW, v_.frame.toWorld(out.sample.wi));
     return true;
 }
 
-float DiffuseAim::pdf(const Vertex& v, const DiffuseBsdf& bsdf, Vec3 direction) const {
-    return mixturePdf(partsAt(v), bsdf.eval(v.wo, v.frame.toLocal(direction)).diffuse.pdfW, direction);
+float DiffuseAim::At::pdf(Vec3 direction) const {
+    return pathDensity(bsdf_.eval(v_.wo, v_.frame.toLocal(direction)).diffuse.pdfW, direction) / effort();
 }
 
 }  // namespace lsde

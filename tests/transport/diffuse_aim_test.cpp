@@ -38,17 +38,18 @@ Vertex floorAt(Vec3 position, bool fromBelow) {
 
 constexpr DiffuseBsdf kGrey{Rgb(0.5F)};
 constexpr int kTests = 4;
+constexpr float kBoost = 4;
 
 bool sampleOnce(const DiffuseAim& aim, const Vertex& v, Sampler sampler, DiffuseAim::Direction& direction) {
     const float uChoice = sampler.next();
-    return aim.sample(v, kGrey, uChoice, sampler.next2D(), direction);
+    return aim.at(v, kGrey).sample(uChoice, sampler.next2D(), direction);
 }
 
 }  // namespace
 
 TEST_CASE("directions aimed from a diffuse surface have the density of the mixture") {
     const auto scene = floorWithCasters();
-    const DiffuseAim aim(*scene, 0.5F);
+    const DiffuseAim aim(*scene, kBoost);
     for (const bool fromBelow : {false, true})
         for (const Vec3 p : {Vec3(0, 0, 0), Vec3(-2, 0, 0.1F)}) {  // the second lies in a caster's sphere
             CAPTURE(fromBelow);
@@ -57,42 +58,46 @@ TEST_CASE("directions aimed from a diffuse surface have the density of the mixtu
             const auto result = test::chiSquaredOnSphere(
                 {24, 24, 12, 100'000},
                 [&]() -> std::optional<Vec3> {
-                    Sampler s = Sampler::sequence(i++, Stage::Test, 0);
                     DiffuseAim::Direction d;
-                    const float uChoice = s.next();
-                    if (!aim.sample(v, kGrey, uChoice, s.next2D(), d)) return {};
+                    if (!sampleOnce(aim, v, Sampler::sequence(i++, Stage::Test, 0), d)) return {};
                     return v.frame.toWorld(d.sample.wi);
                 },
                 [&](Vec3 direction) -> double {
-                    return direction.y * v.woWorld.y > 0 ? aim.pdf(v, kGrey, direction) : 0;
+                    return direction.y * v.woWorld.y > 0 ? aim.at(v, kGrey).pdf(direction) : 0;
                 });
             CHECK(result.accepted(kTests));
         }
 }
 
-TEST_CASE("the weights of aimed directions carry all the light, and none carries more than the lobe's share allows") {
-    const auto scene = floorWithCasters();
-    const Vertex v = floorAt({0.2F, 0, 0.1F}, false);
-    for (const float share : {0.0F, 0.5F, 0.9F}) {
-        const DiffuseAim aim(*scene, share);
-        double sum = 0;
-        constexpr int kSamples = 1 << 16;
-        for (int i = 0; i < kSamples; ++i) {
-            Sampler s = Sampler::sequence(1, Stage::Test, static_cast<uint64_t>(i));
-            DiffuseAim::Direction d;
-            const Vec2 u = s.next2D();
-            if (!aim.sample(v, kGrey, s.next(), u, d)) continue;
-            CHECK(d.weight <= 1.00001F / (1 - share));
-            if (share == 0) CHECK(d.weight == 1);
-            sum += d.weight;
+TEST_CASE("light aimed from a diffuse surface has even weights, near and far from the caster") {
+    SceneBuilder builder;
+    builder.add(test::sphere({0, 1, 0}, 0.5F, 1), test::metal(0));
+    const auto scene = builder.build();
+    for (const float boost : {0.0F, 4.0F, 100.0F, 1e4F}) {
+        const DiffuseAim aim(*scene, boost);
+        for (const Vec3 p : {Vec3(0.2F, 0, 0.1F), Vec3(3, 0, 0), Vec3(0, 0, 30)}) {
+            CAPTURE(boost);
+            CAPTURE(p.x);
+            const Vertex v = floorAt(p, false);
+            const float aimed = boost * aim.at(v, kGrey).share();
+            CHECK(aim.at(v, kGrey).effort() == doctest::Approx(1 + std::min(32.0F, aimed)));
+            for (uint64_t i = 0; i < 20'000; ++i) {
+                DiffuseAim::Direction d;
+                if (!sampleOnce(aim, v, Sampler::sequence(1, Stage::Test, i), d)) continue;
+                CHECK(d.weight <= 1.00001F);
+                // Of the lobe's density, within the cone, by the cone's mean density: up to the cosine's change in it.
+                if (d.aimed) {
+                    if (aimed < 32) CHECK(d.weight < 2.5F / (1 + boost));
+                    CHECK(d.weight > 0);
+                }
+            }
         }
-        CHECK(sum / kSamples == doctest::Approx(1).epsilon(share > 0.5F ? 0.015 : 0.005));
     }
 }
 
 TEST_CASE("the mean weight is 1 on both sides, in a caster's sphere and beside casters below the horizon") {
     const auto scene = floorWithCasters();
-    const DiffuseAim aim(*scene, 0.5F);
+    const DiffuseAim aim(*scene, kBoost);
     for (const bool fromBelow : {false, true})
         for (const Vec3 p : {Vec3(0.2F, 0, 0.1F), Vec3(-2, 0, 0.1F), Vec3(1, 0.5F, 0), Vec3(0, 9, 0)}) {
             CAPTURE(fromBelow);
@@ -103,7 +108,7 @@ TEST_CASE("the mean weight is 1 on both sides, in a caster's sphere and beside c
                 DiffuseAim::Direction d;
                 // Directions below the horizon carry nothing: the others make up for them.
                 const bool goesOn = sampleOnce(aim, v, Sampler::sequence(i, Stage::Test, 1), d);
-                weight.add(goesOn ? static_cast<double>(d.weight) : 0);
+                weight.add(goesOn ? static_cast<double>(d.weight * aim.at(v, kGrey).effort()) : 0);
                 if (goesOn) REQUIRE(d.sample.wi.z * v.wo.z > 0);
             }
             CHECK(weight.agrees(1));
@@ -119,24 +124,25 @@ TEST_CASE("more casters than are aimed at one by one are aimed at in groups") {
                 test::metal(0));
     const auto scene = builder.build();
     REQUIRE(scene->casters().size() == 16);
-    const DiffuseAim aim(*scene, 0.5F);
+    const DiffuseAim aim(*scene, kBoost);
     const Vertex v = floorAt({0.3F, 0, 0.1F}, false);
     test::Mean weight, aimed;
     for (uint64_t i = 0; i < 50'000; ++i) {
         DiffuseAim::Direction d;
         const bool goesOn = sampleOnce(aim, v, Sampler::sequence(i, Stage::Test, 2), d);
-        weight.add(goesOn ? static_cast<double>(d.weight) : 0);
-        aimed.add(d.aimed ? 1 : 0);
+        const float effort = aim.at(v, kGrey).effort();
+        weight.add(goesOn ? static_cast<double>(d.weight * effort) : 0);
+        aimed.add((d.aimed ? 1 : 0) - (effort - 1) / effort);
     }
     CHECK(weight.agrees(1));
-    CHECK(aimed.agrees(0.5));
+    CHECK(aimed.agrees(0));
 }
 
 TEST_CASE("nothing is aimed at a sphere around the point, nor at one below the horizon") {
     SceneBuilder builder;
     builder.add(test::sphere({0, 1, 0}, 0.5F, 1), test::metal(0));
     const auto scene = builder.build();
-    const DiffuseAim aim(*scene, 0.5F);
+    const DiffuseAim aim(*scene, kBoost);
     const auto aimedFrom = [&](Vec3 p, bool fromBelow) {
         const Vertex v = floorAt(p, fromBelow);
         int aimed = 0;
@@ -148,8 +154,10 @@ TEST_CASE("nothing is aimed at a sphere around the point, nor at one below the h
         }
         return aimed;
     };
-    CHECK(aimedFrom({0, 0, 0}, false) == doctest::Approx(500).epsilon(0.01));
-    CHECK(aimedFrom({0, 2, 0}, true) == doctest::Approx(500).epsilon(0.01));
+    // Half the distance away: the cone's 1 - cos is .134, its share of the lobe as much.
+    const double shareAimed = kBoost * 0.134 / (1 + kBoost * 0.134);
+    CHECK(aimedFrom({0, 0, 0}, false) == doctest::Approx(1000 * shareAimed).epsilon(0.02));
+    CHECK(aimedFrom({0, 2, 0}, true) == doctest::Approx(1000 * shareAimed).epsilon(0.02));
     CHECK(aimedFrom({0, 0, 0}, true) == 0);
     CHECK(aimedFrom({0, 2, 0}, false) == 0);
     CHECK(aimedFrom({0, 1.1F, 0}, false) == 0);
