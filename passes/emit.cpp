@@ -23,7 +23,7 @@ Emission::Emission(const Scene& scene, const EmitSettings& settings, RunContext&
     : scene_(scene),
       settings_(settings),
       seed_(run.seed),
-      sources_(scene, scene.lightSelection(settings.lights), settings.aim, wholeShareFor(settings.store)),
+      sources_(scene, scene.lightSelection(settings.lights), settings.aim ? aimSharesFor(settings.store) : kNotAimed),
       diffuseAim_(scene, settings.aim ? kPilotDiffuseBoost : 0),
       tracer_{scene_, sources_, diffuseAim_, settings_.store, settings_.maxDepth, seed_},
       ledger_(scene.lights().size(), scene.objects().size()) {

@@ -22,10 +22,8 @@ inline bool holds(Store store, PhotonClass c) {
     return c == PhotonClass::Caustic || store == Store::All || (c == PhotonClass::Indirect && store == Store::Indirect);
 }
 
-// Share of a light's paths that is not aimed at casters: more where light goes on from what it lights first.
-inline float wholeShareFor(Store store) {
-    return store == Store::Caustic ? kWholeEmissionShare : kWholeEmissionShareGoingOn;
-}
+// More paths that are not aimed at casters where light goes on from what it lights first.
+inline AimShares aimSharesFor(Store store) { return store == Store::Caustic ? kAimedAtCasters : kAimedGoingOn; }
 
 struct LightTracerInput {
     const Scene& scene;

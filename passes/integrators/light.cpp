@@ -28,7 +28,7 @@ class LightIntegrator : public Integrator {
           camera_(input.camera),
           layers_(input.layers),
           seed_(input.seed),
-          sources_(input.scene, input.lights, true, kWholeEmissionShareSeen),
+          sources_(input.scene, input.lights, kAimedSeen),
           pixels_(static_cast<uint64_t>(camera_.filmWidth()) * static_cast<uint64_t>(camera_.filmHeight())),
           sums_(static_cast<size_t>(1 + layers_.paths()) * pixels_) {}
 

@@ -86,10 +86,16 @@ void Scene::buildLights() {
 }
 
 void Scene::buildCasters() {
+    // Wider than the caster by more than directions and places are rounded to: what meets a far caster's rim lies in
+    // its cone, or it would weigh as light that was never aimed, 1e6 times too much.
+    constexpr float kMargin = 1e-3F, kRounding = 4e-7F;
+    const float rounding = kRounding * (boundingSphere_.radius + glm::length(boundingSphere_.centre));
     std::vector<Sphere> spheres;
     for (size_t i = 0; i < meshes_.size(); ++i)
-        if (meshes_[i].caster && description_.meshes[i].switches.aim)
+        if (meshes_[i].caster && description_.meshes[i].switches.aim) {
             spheres.push_back(boundingSphereOf(description_.meshes[i]));
+            spheres.back().radius += kMargin * spheres.back().radius + rounding;
+        }
     casters_ = groupCasters(std::move(spheres), kMaxCasters);
 }
 

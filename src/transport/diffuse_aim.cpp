@@ -29,10 +29,10 @@ DiffuseAim::At DiffuseAim::at(const Vertex& v, const DiffuseBsdf& bsdf) const {
     return at;
 }
 
-float DiffuseAim::At::pathDensity(float lobePdf, Vec3 direction) const {
+float DiffuseAim::At::pathDensity(float lobePdf, Vec3 direction, size_t drawn) const {
     float density = 0;
     for (size_t i = 0; i < count_; ++i)
-        if (within(cones_[i], direction)) density += shares_[i] * conePdf(cones_[i].oneMinusCos);
+        if (i == drawn || within(cones_[i], direction)) density += shares_[i] * conePdf(cones_[i].oneMinusCos);
     return lobePdf + boost_ * density;
 }
 
@@ -40,20 +40,21 @@ bool DiffuseAim::At::sample(float uChoice, Vec2 u, Direction& out) const {
     float left = uChoice * effort() - 1;  // below 0: the lobe
     out.aimed = left >= 0 && count_ > 0;
     if (!bsdf_.sample(v_.wo, u, out.sample)) return false;
+    size_t chosen = kLobe;
     if (out.aimed) {
-        size_t chosen = 0;
+        chosen = 0;
         while (chosen + 1 < count_ && left >= boost_ * shares_[chosen]) left -= boost_ * shares_[chosen++];
         const Cone& cone = cones_[chosen];
         out.sample.wi = v_.frame.toLocal(Frame(cone.axis).toWorld(squareToCone(u, cone.oneMinusCos)));
         if (out.sample.wi.z * v_.wo.z <= 0) return false;
         out.sample.pdfW = bsdf_.eval(v_.wo, out.sample.wi).diffuse.pdfW;
     }
-    out.weight = out.sample.pdfW / pathDensity(out.sample.pdfW, v_.frame.toWorld(out.sample.wi));
+    out.weight = out.sample.pdfW / pathDensity(out.sample.pdfW, v_.frame.toWorld(out.sample.wi), chosen);
     return true;
 }
 
 float DiffuseAim::At::pdf(Vec3 direction) const {
-    return pathDensity(bsdf_.eval(v_.wo, v_.frame.toLocal(direction)).diffuse.pdfW, direction) / effort();
+    return pathDensity(bsdf_.eval(v_.wo, v_.frame.toLocal(direction)).diffuse.pdfW, direction, kLobe) / effort();
 }
 
 }  // namespace lsde

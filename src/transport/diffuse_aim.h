@@ -40,8 +40,10 @@ class DiffuseAim {
       private:
         friend class DiffuseAim;
         At(const Vertex& v, const DiffuseBsdf& bsdf, float boost) : v_(v), bsdf_(bsdf), boost_(boost) {}
-        // Sum over the parts of their density, in paths for each path of the lobe.
-        float pathDensity(float lobePdf, Vec3 direction) const;
+        static constexpr size_t kLobe = kMaxCasters;
+        // Sum over the parts of their density, in paths for each path of the lobe. The cone that drew the direction
+        // counts even if rounding put it just beyond its edge.
+        float pathDensity(float lobePdf, Vec3 direction, size_t drawn) const;
 
         const Vertex& v_;
         const DiffuseBsdf& bsdf_;

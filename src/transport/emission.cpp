@@ -58,8 +58,9 @@ float wholePdf(const PointLight& light, Vec3 direction) {
 
 }  // namespace
 
-EmissionSampler::EmissionSampler(const Scene& scene, const std::vector<bool>& selected, bool aim, float wholeShare)
-    : scene_(scene), wholeShare_(aim ? wholeShare : 1) {
+EmissionSampler::EmissionSampler(const Scene& scene, const std::vector<bool>& selected, AimShares shares)
+    : scene_(scene), shares_(shares) {
+    if (shares.whole < 1) findTargets();
     const std::vector<Bounds> solids = solidBounds(scene);
     std::vector<double> weights(scene.lights().size());
     double total = 0, count = 0;
@@ -79,17 +80,37 @@ EmissionSampler::EmissionSampler(const Scene& scene, const std::vector<bool>& se
     choice_ = DiscreteDistribution(weights);
 }
 
-// The whole emission first, then the casters by their use to the light, with a floor for each that has any.
+// A glass in a stadium is lit by what little of the stadium's light falls near it, and that comes back through it: the
+// surroundings at all scales between the glass and the scene get as many paths each.
+void EmissionSampler::findTargets() {
+    constexpr float kFirst = 2, kStep = 4, kLargest = 0.25F;
+    for (const Caster& caster : scene_.casters()) targets_.push_back(caster.bounds);
+    casters_ = targets_.size();
+    if (casters_ == 0 || !(shares_.around > 0)) return;
+    const Sphere all = groupCasters(targets_, 1).front().bounds;
+    for (float radius = kFirst * all.radius; radius < kLargest * scene_.boundingSphere().radius; radius *= kStep)
+        targets_.push_back({all.centre, radius});
+}
+
+// The whole emission first, then the casters by their use to the light, with a floor for each that has any, then their
+// surroundings evenly.
 DiscreteDistribution EmissionSampler::partsOf(const Light& light) const {
-    std::vector<double> parts{wholeShare_};
-    double total = 0;
-    for (const Caster& caster : scene_.casters()) {
-        parts.push_back(usefulness(light, caster.bounds));
-        total += parts.back();
+    std::vector<double> parts{1};
+    double useful = 0, around = 0;
+    for (size_t i = 0; i < targets_.size(); ++i) {
+        parts.push_back(usefulness(light, targets_[i]));
+        if (i < casters_)
+            useful += parts.back();
+        else if (parts.back() > 0)
+            ++around;
     }
-    const auto casters = static_cast<double>(scene_.casters().size());
+    const double aroundShare = around > 0 ? shares_.around : 0;
+    const double casterShare = useful > 0 ? 1 - static_cast<double>(shares_.whole) - shares_.around : 0;
     for (size_t i = 1; i < parts.size(); ++i)
-        if (parts[i] > 0) parts[i] = (1 - wholeShare_) * (0.9 * parts[i] / total + 0.1 / casters);
+        if (parts[i] > 0)
+            parts[i] = i <= casters_ ? casterShare * (0.9 * parts[i] / useful + 0.1 / static_cast<double>(casters_))
+                                     : aroundShare / around;
+    parts[0] = 1 - aroundShare - casterShare;
     return DiscreteDistribution(parts);
 }
 
@@ -103,23 +124,24 @@ EmissionSampler::Aim EmissionSampler::aimOf(const Light& light, const std::vecto
     return out;
 }
 
-float EmissionSampler::aimedConePdf(const Aim& aim, Vec3 position, Vec3 direction, float whole) const {
+float EmissionSampler::aimedConePdf(const Aim& aim, Vec3 position, Vec3 direction, float whole, size_t drawn) const {
     float pdf = 0;
     for (size_t i = 1; i < aim.parts.size(); ++i) {
         if (!(aim.parts.pmf(i) > 0)) continue;
-        const Cone cone = coneTo(scene_.casters()[i - 1].bounds, position);
-        if (within(cone, direction)) pdf += aim.parts.pmf(i) * (cone.everything ? whole : conePdf(cone.oneMinusCos));
+        const Cone cone = coneTo(targets_[i - 1], position);
+        if (i == drawn || within(cone, direction))
+            pdf += aim.parts.pmf(i) * (cone.everything ? whole : conePdf(cone.oneMinusCos));
     }
     return pdf;
 }
 
-float EmissionSampler::aimedDiscPdf(const Aim& aim, const DirectionalLight& light, Vec3 position) const {
+float EmissionSampler::aimedDiscPdf(const Aim& aim, const DirectionalLight& light, Vec3 position, size_t drawn) const {
     const Frame frame(light.direction);
     float pdf = 0;
     for (size_t i = 1; i < aim.parts.size(); ++i) {
-        const Sphere& s = scene_.casters()[i - 1].bounds;
+        const Sphere& s = targets_[i - 1];
         const Vec2 d = discOffset(s, position, frame);
-        if (glm::dot(d, d) <= square(s.radius)) pdf += aim.parts.pmf(i) / (kPi * square(s.radius));
+        if (i == drawn || glm::dot(d, d) <= square(s.radius)) pdf += aim.parts.pmf(i) / (kPi * square(s.radius));
     }
     return pdf;
 }
@@ -131,13 +153,13 @@ bool EmissionSampler::sampleArea(const AreaLight& light, const Aim& aim, size_t 
     const EmissionPoint e = light.samplePoint(uPosition, sampler.next());
     const Frame frame(e.normal);
     Cone cone;
-    if (part > 0) cone = coneTo(scene_.casters()[part - 1].bounds, e.position);
+    if (part > 0) cone = coneTo(targets_[part - 1], e.position);
     const Vec3 direction = cone.everything ? frame.toWorld(squareToCosineHemisphere(uDirection))
                                            : Frame(cone.axis).toWorld(squareToCone(uDirection, cone.oneMinusCos));
     const float cosine = glm::dot(direction, e.normal);
     if (!(cosine > 0)) return false;
     const float whole = cosineHemispherePdf(cosine);
-    const float mixture = aim.parts.pmf(0) * whole + aimedConePdf(aim, e.position, direction, whole);
+    const float mixture = aim.parts.pmf(0) * whole + aimedConePdf(aim, e.position, direction, whole, part);
     start.ray = {offsetOrigin(e.position, e.normal, direction, e.epsilon), direction, kInfinity};
     start.power = e.radiance * (cosine / (e.pdfA * mixture));
     start.aimWeight = whole / mixture;
@@ -148,7 +170,7 @@ bool EmissionSampler::samplePoint(const PointLight& light, const Aim& aim, size_
                                   LightPathStart& start) const {
     const Vec2 u = sampler.next2D();
     Cone cone;
-    if (part > 0) cone = coneTo(scene_.casters()[part - 1].bounds, light.position);
+    if (part > 0) cone = coneTo(targets_[part - 1], light.position);
     Vec3 direction;
     if (!cone.everything)
         direction = Frame(cone.axis).toWorld(squareToCone(u, cone.oneMinusCos));
@@ -159,7 +181,7 @@ bool EmissionSampler::samplePoint(const PointLight& light, const Aim& aim, size_
     const float falloff = light.falloff(direction);
     if (!(falloff > 0)) return false;
     const float whole = wholePdf(light, direction);
-    const float mixture = aim.parts.pmf(0) * whole + aimedConePdf(aim, light.position, direction, whole);
+    const float mixture = aim.parts.pmf(0) * whole + aimedConePdf(aim, light.position, direction, whole, part);
     start.ray = {light.position, direction, kInfinity};
     start.power = light.intensity * (falloff / mixture);
     start.aimWeight = whole / mixture;
@@ -170,7 +192,7 @@ void EmissionSampler::sampleDirectional(const DirectionalLight& light, const Aim
                                         LightPathStart& start) const {
     const Vec2 u = squareToDisk(sampler.next2D());
     const Frame frame(light.direction);
-    const Sphere& disc = part > 0 ? scene_.casters()[part - 1].bounds : light.scene;
+    const Sphere& disc = part > 0 ? targets_[part - 1] : light.scene;
     const Vec3 inPlane = disc.centre + disc.radius * (u.x * frame.x + u.y * frame.y);
     // Back to a plane before the whole scene.
     const float back = glm::dot(inPlane - light.scene.centre, light.direction) + 1.01F * light.scene.radius;
@@ -178,7 +200,7 @@ void EmissionSampler::sampleDirectional(const DirectionalLight& light, const Aim
     const float whole = 1 / (kPi * square(light.scene.radius));
     const Vec2 offset = discOffset(light.scene, inPlane, frame);
     const bool inWhole = glm::dot(offset, offset) <= square(light.scene.radius);
-    const float mixture = (inWhole ? aim.parts.pmf(0) * whole : 0) + aimedDiscPdf(aim, light, inPlane);
+    const float mixture = (inWhole ? aim.parts.pmf(0) * whole : 0) + aimedDiscPdf(aim, light, inPlane, part);
     start.power = inWhole ? light.irradiance / mixture : Rgb(0);
     start.aimWeight = whole / mixture;
 }
@@ -215,7 +237,7 @@ EmissionSampler::Densities EmissionSampler::directionDensities(size_t index, Vec
         d.whole = wholePdf(*point, direction);
     else
         d.whole = cosineHemispherePdf(glm::dot(direction, normal));
-    d.mixture = aims_[index].parts.pmf(0) * d.whole + aimedConePdf(aims_[index], position, direction, d.whole);
+    d.mixture = aims_[index].parts.pmf(0) * d.whole + aimedConePdf(aims_[index], position, direction, d.whole, 0);
     return d;
 }
 
@@ -224,7 +246,7 @@ EmissionSampler::Densities EmissionSampler::discDensities(size_t index, Vec3 pos
     const Vec2 offset = discOffset(light.scene, position, Frame(light.direction));
     Densities d;
     d.whole = glm::dot(offset, offset) <= square(light.scene.radius) ? 1 / (kPi * square(light.scene.radius)) : 0;
-    d.mixture = aims_[index].parts.pmf(0) * d.whole + aimedDiscPdf(aims_[index], light, position);
+    d.mixture = aims_[index].parts.pmf(0) * d.whole + aimedDiscPdf(aims_[index], light, position, 0);
     return d;
 }
 

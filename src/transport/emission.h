@@ -1,8 +1,8 @@
 // Where light paths start: a light, a point on it, a direction; aimed at what bends light.
 //
-// Each light samples a mixture of its whole emission (at least a fifth) and of parts aimed at the casters' bounding
-// spheres: cones for point, spot and area lights, discs for directional ones (Jensen 1996, projection maps; as a
-// defensive mixture after Hesterberg 1995). Every path's weight is whole density / mixture density.
+// Each light samples a mixture of its whole emission and of parts aimed at spheres, the casters' bounds and larger ones
+// around all casters: cones for point, spot and area lights, discs for directional ones (Jensen 1996, projection maps;
+// as a defensive mixture after Hesterberg 1995). Every path's weight is whole density / mixture density.
 #pragma once
 
 #include <vector>
@@ -12,11 +12,15 @@
 
 namespace lsde {
 
-// Share of a light's paths that is not aimed: where only photons are wanted that bent, where also those are that go on
-// from a diffuse surface, and where all that is lit is seen.
-inline constexpr float kWholeEmissionShare = 0.2F;
-inline constexpr float kWholeEmissionShareGoingOn = 0.25F;
-inline constexpr float kWholeEmissionShareSeen = 0.8F;
+// Shares of a light's paths that are not aimed at casters.
+struct AimShares {
+    float whole = 1;   // not aimed at all: bounds the weights
+    float around = 0;  // at the surroundings of the casters, where these are small in their scene; else not aimed
+};
+inline constexpr AimShares kNotAimed{1, 0};
+inline constexpr AimShares kAimedAtCasters{0.2F, 0};       // only photons are wanted that bent
+inline constexpr AimShares kAimedGoingOn{0.125F, 0.125F};  // also those that go on from a diffuse surface to casters
+inline constexpr AimShares kAimedSeen{0.8F, 0};            // all that is lit is seen
 
 struct LightPathStart {
     Ray ray;
@@ -29,8 +33,7 @@ struct LightPathStart {
 class EmissionSampler {
   public:
     // selected[i]: light i takes part. Throws Error if none does.
-    EmissionSampler(const Scene& scene, const std::vector<bool>& selected, bool aim,
-                    float wholeShare = kWholeEmissionShare);
+    EmissionSampler(const Scene& scene, const std::vector<bool>& selected, AimShares shares);
 
     // Takes the sampler's first dimensions: position 0-1, direction 2-3 (0-1 where a light has no choice of position),
     // choice of light and part 4, side 5. False: this start carries no light (below an emitter's horizon, outside a
@@ -49,13 +52,14 @@ class EmissionSampler {
     Densities discDensities(size_t light, Vec3 position) const;
 
   private:
-    // Part 0 is the whole emission, part 1 + i is aimed at caster i.
+    // Part 0 is the whole emission, part 1 + i is aimed at target i.
     struct Aim {
         DiscreteDistribution parts;
         MediaStack media;             // point and spot lights: the solids around them
         bool mayStartInside = false;  // area lights: paths may start within a solid, its media are looked up for each
     };
 
+    void findTargets();
     DiscreteDistribution partsOf(const Light& light) const;
     Aim aimOf(const Light& light, const std::vector<Bounds>& solids) const;
     bool sampleArea(const AreaLight& light, const Aim& aim, size_t part, Sampler& sampler, LightPathStart& start) const;
@@ -63,14 +67,17 @@ class EmissionSampler {
                      LightPathStart& start) const;
     void sampleDirectional(const DirectionalLight& light, const Aim& aim, size_t part, Sampler& sampler,
                            LightPathStart& start) const;
-    // Sum over the aimed parts of choice probability times density.
-    float aimedConePdf(const Aim& aim, Vec3 position, Vec3 direction, float wholePdf) const;
-    float aimedDiscPdf(const Aim& aim, const DirectionalLight& light, Vec3 position) const;
+    // Sum over the aimed parts of choice probability times density. The part that drew the direction counts even if
+    // rounding put it just beyond the cone's edge: it would weigh as what is hardly ever drawn.
+    float aimedConePdf(const Aim& aim, Vec3 position, Vec3 direction, float wholePdf, size_t drawn) const;
+    float aimedDiscPdf(const Aim& aim, const DirectionalLight& light, Vec3 position, size_t drawn) const;
 
     const Scene& scene_;
     DiscreteDistribution choice_;
     std::vector<Aim> aims_;
-    float wholeShare_;  // 1: not aimed
+    AimShares shares_;
+    std::vector<Sphere> targets_;  // casters, then spheres around all of them, each larger than the one before
+    size_t casters_ = 0;           // of the targets
     Rgb totalPower_{0};
     float fairPower_ = 0;
 };

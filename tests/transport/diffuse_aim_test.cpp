@@ -115,6 +115,21 @@ TEST_CASE("the mean weight is 1 on both sides, in a caster's sphere and beside c
         }
 }
 
+TEST_CASE("no direction towards a far caster weighs as if it had not been aimed") {
+    SceneBuilder builder;
+    builder.add(test::sphere({1, 100, -2}, 0.01F, 2), test::metal(0));
+    const auto scene = builder.build();
+    constexpr float kHigh = 1e8F;
+    const DiffuseAim aim(*scene, kHigh);
+    const Vertex v = floorAt({0.1F, 0, 0.3F}, false);
+    const auto at = aim.at(v, kGrey);
+    for (uint64_t i = 0; i < 300'000; ++i) {
+        DiffuseAim::Direction d;
+        if (sampleOnce(aim, v, Sampler::sequence(1, Stage::Test, i), d) && d.aimed)
+            REQUIRE(d.weight * (at.effort() - 1) < 2.5F * at.share());
+    }
+}
+
 TEST_CASE("more casters than are aimed at one by one are aimed at in groups") {
     SceneBuilder builder;
     for (int row = 0; row < 5; ++row)

@@ -83,7 +83,7 @@ void checkDirections(Kind kind, bool contained) {
     if (contained) addContainingCaster(builder);
     addLight(builder, kind);
     const auto scene = builder.build();
-    const EmissionSampler sources(*scene, test::allLights(*scene), true);
+    const EmissionSampler sources(*scene, test::allLights(*scene), kAimedAtCasters);
     uint64_t i = 0;
     const auto result = test::chiSquaredOnSphere(
         {24, 24, 12, 100'000},
@@ -118,7 +118,7 @@ TEST_CASE("rays of a directional light have the density of its mixture of discs"
     builder.add(test::plate({0, 0, 0}, 3), test::lambert(Rgb(0.5F)));
     addLight(builder, Kind::Sun);
     const auto scene = builder.build();
-    const EmissionSampler sources(*scene, test::allLights(*scene), true);
+    const EmissionSampler sources(*scene, test::allLights(*scene), kAimedAtCasters);
     const Sphere whole = scene->boundingSphere();
     const Frame frame(glm::normalize(Vec3(0.3F, -1, 0.2F)));
     const double side = 2 * whole.radius;
@@ -149,15 +149,42 @@ TEST_CASE("no path weighs more than the whole emission's share allows") {
             if (contained) addContainingCaster(builder);
             addLight(builder, kind);
             const auto scene = builder.build();
-            const EmissionSampler sources(*scene, test::allLights(*scene), true);
+            const EmissionSampler sources(*scene, test::allLights(*scene), kAimedAtCasters);
             float most = 0;
             for (uint64_t i = 0; i < 50'000; ++i) {
                 const Drawn d = draw(sources, i);
                 if (d.emits) most = std::max(most, d.start.aimWeight);
             }
             CHECK(most > 0.1F);
-            CHECK(most <= 1.0001F / kWholeEmissionShare);
+            CHECK(most <= 1.0001F / kAimedAtCasters.whole);
         }
+}
+
+TEST_CASE("nothing that meets a far caster, or its rim, weighs as if it had not been aimed") {
+    constexpr float kRadius = 0.01F;
+    const Vec3 centre = kLight - Vec3(1, 100, -2);
+    for (const Kind kind : {Kind::Point, Kind::AreaDown, Kind::Sun}) {
+        CAPTURE(static_cast<int>(kind));
+        SceneBuilder builder;
+        builder.add(test::sphere(centre, kRadius, 2), test::metal(0));
+        builder.add(test::plate(centre, 50, false), test::lambert(Rgb(0.5F)));
+        addLight(builder, kind);
+        const auto scene = builder.build();
+        const EmissionSampler sources(*scene, test::allLights(*scene), kAimedAtCasters);
+        int met = 0;
+        float most = 0;
+        for (uint64_t i = 0; i < 300'000; ++i) {
+            const Drawn d = draw(sources, i);
+            if (!d.emits) continue;
+            const glm::dvec3 direction(d.start.ray.direction), toCentre = glm::dvec3(centre - d.start.ray.origin);
+            // What was aimed is all there is so close by, whole emission is too rare.
+            if (glm::length(glm::cross(direction, toCentre)) > 1.5 * static_cast<double>(kRadius)) continue;
+            ++met;
+            most = std::max(most, d.start.aimWeight);
+        }
+        CHECK(met > 100'000);
+        CHECK(most < 1e-3F);
+    }
 }
 
 TEST_CASE("the mean power of a path is the lights' total power, aimed or not") {
@@ -170,7 +197,7 @@ TEST_CASE("the mean power of a path is the lights' total power, aimed or not") {
             addCasters(builder);
             addLight(builder, kind, lamp);
             const auto scene = builder.build();
-            const EmissionSampler sources(*scene, test::allLights(*scene), aim);
+            const EmissionSampler sources(*scene, test::allLights(*scene), aim ? kAimedAtCasters : kNotAimed);
             test::Mean power;
             for (uint64_t i = 0; i < 100'000; ++i) {
                 const Drawn d = draw(sources, i);
@@ -187,7 +214,7 @@ TEST_CASE("the sun gives a caster whose bounds reach beyond the scene's disc not
     builder.add(test::plate({4.5F, 0, 0}, 0.5F), test::metal(0));
     builder.sun({0, -1, 0}, Rgb(1));
     const auto scene = builder.build();
-    const EmissionSampler sources(*scene, test::allLights(*scene), true);
+    const EmissionSampler sources(*scene, test::allLights(*scene), kAimedAtCasters);
     const Sphere disc = scene->boundingSphere();
     int inCaster = 0;
     for (uint64_t i = 0; i < 10'000; ++i) {
@@ -206,7 +233,7 @@ TEST_CASE("the total power is that of Lambert, of all directions, of the spot's 
         addCasters(builder);
         addLight(builder, kind, test::plate(kLight, 0.4F, false));
         const auto scene = builder.build();
-        return EmissionSampler(*scene, test::allLights(*scene), true).totalPower().y /
+        return EmissionSampler(*scene, test::allLights(*scene), kAimedAtCasters).totalPower().y /
                (square(scene->boundingSphere().radius) * kPi);
     };
     SceneBuilder casters;
@@ -235,7 +262,7 @@ TEST_CASE("aiming changes no flux: on a caster, beside it, and by direction") {
         const std::array<Vec3, 3> targets = {Vec3(0, 0, 0), Vec3(-1.3F, 0, 0.6F), Vec3(0.2F, 0, -1.6F)};
         std::array<std::array<test::Mean, 3>, 2> flux;
         for (const bool aim : {false, true}) {
-            const EmissionSampler sources(*scene, test::allLights(*scene), aim);
+            const EmissionSampler sources(*scene, test::allLights(*scene), aim ? kAimedAtCasters : kNotAimed);
             for (uint64_t i = 0; i < 100'000; ++i) {
                 const Drawn d = draw(sources, i);
                 const Ray& r = d.start.ray;
@@ -256,13 +283,43 @@ TEST_CASE("aiming changes no flux: on a caster, beside it, and by direction") {
     }
 }
 
+TEST_CASE("around a small glass in a large scene light is sampled at all scales, and its flux is right") {
+    constexpr float kHeight = 50;
+    SceneBuilder builder;
+    builder.add(test::sphere({0, 0, 0}, 0.05F, 2), test::glass(1.5F));
+    builder.add(test::plate({0, 0, 0}, 500, true), test::lambert(Rgb(0.5F)));
+    builder.point({0, kHeight, 0}, Rgb(1));
+    const auto scene = builder.build();
+    const EmissionSampler sources(*scene, test::allLights(*scene), kAimedGoingOn);
+    constexpr std::array kRadii = {0.1F, 0.4F, 1.6F, 6.4F, 25.6F};
+    std::array<test::Mean, kRadii.size()> flux;
+    std::array<int, kRadii.size()> paths{};
+    constexpr int kPaths = 200'000;
+    for (uint64_t i = 0; i < kPaths; ++i) {
+        const Drawn d = draw(sources, i);
+        const Ray& r = d.start.ray;
+        const Vec3 onFloor = r.at(-r.origin.y / r.direction.y);
+        for (size_t k = 0; k < kRadii.size(); ++k) {
+            const bool within = d.emits && r.direction.y < 0 && glm::length(onFloor) < kRadii[k];
+            flux[k].add(within ? d.start.power.y : 0);
+            paths[k] += within ? 1 : 0;
+        }
+    }
+    for (size_t k = 0; k < kRadii.size(); ++k) {
+        CAPTURE(kRadii[k]);
+        const double solidAngle = 2 * kPi * (1 - kHeight / std::hypot(kHeight, kRadii[k]));
+        CHECK(flux[k].agrees(solidAngle));
+        if (k > 0) CHECK(paths[k] - paths[k - 1] > kPaths / 50);
+    }
+}
+
 TEST_CASE("one path in several is aimed at each light's casters, and several lights share the paths by power") {
     SceneBuilder builder;
     addCasters(builder);
     builder.point({0, 2, 0}, Rgb(9));
     builder.point({0, 3, 1}, Rgb(1));
     const auto scene = builder.build();
-    const EmissionSampler sources(*scene, test::allLights(*scene), true);
+    const EmissionSampler sources(*scene, test::allLights(*scene), kAimedAtCasters);
     std::array<test::Mean, 2> power;
     std::array<int, 2> paths{};
     constexpr int kPaths = 100'000;
@@ -281,7 +338,7 @@ TEST_CASE("the first points of the sequence lie evenly over a light's directions
     builder.add(test::plate({0, 0, 0}, 1), test::lambert(Rgb(0.5F)));
     builder.point({0, 1, 0}, Rgb(1));
     const auto scene = builder.build();
-    const EmissionSampler sources(*scene, test::allLights(*scene), false);
+    const EmissionSampler sources(*scene, test::allLights(*scene), kNotAimed);
     // 256 points of a (0,2)-sequence: one in each of 16 x 16 cells of equal solid angle.
     std::array<int, 256> cells{};
     for (uint64_t i = 0; i < 256; ++i) {
@@ -299,7 +356,7 @@ TEST_CASE("a path's further numbers start at the same dimension for every light"
         addCasters(builder);
         addLight(builder, kind);
         const auto scene = builder.build();
-        const EmissionSampler sources(*scene, test::allLights(*scene), false);
+        const EmissionSampler sources(*scene, test::allLights(*scene), kNotAimed);
         Sampler sampler = Sampler::sequence(1, Stage::Test, 17), fresh = sampler;
         LightPathStart start;
         REQUIRE(sources.sample(sampler, start));
@@ -316,7 +373,7 @@ TEST_CASE("paths that start within a solid know it, and others do not") {
         water.openEdges = 4;
         addLightTo(builder);
         const auto scene = builder.build();
-        const EmissionSampler sources(*scene, test::allLights(*scene), false);
+        const EmissionSampler sources(*scene, test::allLights(*scene), kNotAimed);
         return draw(sources, 3).start.media;
     };
     const auto lampAt = [](Vec3 p) {
@@ -343,5 +400,5 @@ TEST_CASE("an emission without any light is refused") {
     builder.add(test::plate({0, 0, 0}, 1), test::lambert(Rgb(0.5F)));
     builder.point({0, 1, 0}, Rgb(1));
     const auto scene = builder.build();
-    CHECK_THROWS_AS(EmissionSampler(*scene, {false}, true), Error);
+    CHECK_THROWS_AS(EmissionSampler(*scene, {false}, kAimedAtCasters), Error);
 }
