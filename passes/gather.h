@@ -61,7 +61,7 @@ struct RadiusRule {
 
 struct GatherSettings {
     IndexKind index = IndexKind::Kd;
-    RadiusRule caustic{{{20, 2000, 2.5F}, 500}, 1600, 20, 80, 0.5F};
+    RadiusRule caustic{{{20, 2000, 2.5F}, 300}, 1600, 20, 80, 0.5F};
     RadiusRule indirect{{{50, 8000, 2}, 25}, 8000, 50, 400, 0};
     bool indirectFromMap = true;  // where the map holds that class
     ProgressiveRadius progressive;
