@@ -35,6 +35,7 @@ uint64_t takeSamples(Integrator& integrator, const SampleLimits& limits, RunCont
     uint64_t done = 0;
     uint64_t step = 1;
     const double start = limits.clock ? limits.clock->used() : 0;
+    double usedBefore = 0;
     while (!limits.count || done < *limits.count) {
         if (run.interrupted() && done > 0) {
             interrupted = true;
@@ -49,9 +50,12 @@ uint64_t takeSamples(Integrator& integrator, const SampleLimits& limits, RunCont
             continue;
         }
         const Clock& clock = *limits.clock;
-        const double perSample = (clock.used() - start) / static_cast<double>(done);
+        // As the last ones: the first ones find out about the light, and later ones go where there is more to do.
+        const double used = clock.used() - start;
+        const double perSample = (used - usedBefore) / static_cast<double>(step);
+        usedBefore = used;
         const double affordable = (clock.left() - limits.reserve) / perSample;
-        run.progress("camera", (clock.used() - start) / std::max(1e-9, clock.limit() - limits.reserve - start));
+        run.progress("camera", used / std::max(1e-9, clock.limit() - limits.reserve - start));
         if (affordable < 0.5) break;
         step = std::min<uint64_t>(std::max<uint64_t>(1, static_cast<uint64_t>(0.5 * affordable)), 64);
     }
