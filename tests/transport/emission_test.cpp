@@ -313,7 +313,7 @@ TEST_CASE("around a small glass in a large scene light is sampled at all scales,
     }
 }
 
-TEST_CASE("one path in several is aimed at each light's casters, and several lights share the paths by power") {
+TEST_CASE("one path in several is aimed at each light's casters, and several lights share the paths by power's root") {
     SceneBuilder builder;
     addCasters(builder);
     builder.point({0, 2, 0}, Rgb(9));
@@ -328,7 +328,7 @@ TEST_CASE("one path in several is aimed at each light's casters, and several lig
         ++paths[d.start.light];
         for (size_t l = 0; l < 2; ++l) power[l].add(d.start.light == l ? d.start.power.x : 0);
     }
-    CHECK(paths[0] == doctest::Approx(kPaths * (0.8 * 0.9 + 0.1)).epsilon(0.001));
+    CHECK(paths[0] == doctest::Approx(kPaths * (0.9 * 0.75 + 0.05)).epsilon(0.001));
     CHECK(power[0].agrees(9 * 4 * kPi));
     CHECK(power[1].agrees(1 * 4 * kPi));
 }
