@@ -29,6 +29,7 @@ struct EyePath {
     int splits = 0;         // interfaces that may still be split
     int depth = 0;          // events so far
     float misPdf = 0;       // 1/sr with which the last non-delta vertex drew this direction
+    LitPlace place;         // and that vertex, for the choice of a light there
     float travelled = 0;    // m since the last vertex that was not passed straight
     float width = 0;        // m: short side of the pixel's footprint at the ray's origin
     float spread = 0;       // its growth per metre
@@ -126,7 +127,7 @@ void EyeTracer::follow(EyePath& path, EyeScratch& scratch) const {
         if (settings_.maxDepth > 0 && path.depth >= settings_.maxDepth) return;
         if (hasDiffuseLobe(v.bsdf) || hasGlossyLobe(v.bsdf)) {
             path.endsAtDiffuse = indirectFromMap(v);
-            path.bsdfSamples = path.endsAt(v) ? lights_.bsdfSamples(v) : 1;
+            path.bsdfSamples = path.endsAt(v) ? lights_.bsdfSamples(litPlace(v)) : 1;
             addDirect(v, path, scratch);
             if (photons_ != nullptr) addPhotons(v, path, scratch);
         }
@@ -150,7 +151,8 @@ void EyeTracer::addEmission(const Vertex& v, const EyePath& path, EyeScratch& sc
     if (hit == EyeWalkClass::EmitterHit::Dropped) return;
     float weight = 1;
     if (hit == EyeWalkClass::EmitterHit::Mis)
-        weight = powerHeuristic(path.misPdf, directLightPdf(scene_, lights_, v.surface, v.woWorld, path.travelled));
+        weight = powerHeuristic(path.misPdf,
+                                directLightPdf(scene_, lights_.at(path.place), v.surface, v.woWorld, path.travelled));
     scratch.sums.contribute(layers_, path.state.throughput * radiance * weight, layers_.filter().light(), path.mask);
 }
 
@@ -176,10 +178,11 @@ void EyeTracer::addDirect(const Vertex& v, EyePath& path, EyeScratch& scratch) c
     }
     if (!query.diffuse && !query.glossy) return;
     const Rgb throughput = path.state.throughput / static_cast<float>(samples);
+    const LightChoice choice = lights_.at(litPlace(v));
     for (int i = 0; i < samples; ++i) {
         const Vec2 onLight = samples == 1 ? u : inQuarter(u, i);
         const float which = rotated(uLight, static_cast<float>(i) / static_cast<float>(samples));
-        const DirectLight d = sampleDirectLight(scene_, lights_, v, query, which, onLight, scratch.walk);
+        const DirectLight d = sampleDirectLight(scene_, choice, v, query, which, onLight, scratch.walk);
         LightPathState arriving = light;
         for (int k = 0; k < d.straightPassages; ++k) layers_.filter().append(arriving, Event::Specular);
         if (!isBlack(d.diffuse)) scratch.sums.contribute(layers_, throughput * d.diffuse, arriving, diffuse);
@@ -319,6 +322,7 @@ bool EyeTracer::step(const Vertex& v, const BsdfSample& sample, EyePath& path) c
     if (!sample.delta) {
         path.splits = settings_.splits;
         path.misPdf = sample.pdfW;
+        path.place = litPlace(v);
         // Weights must sum to one with those of light sampling, which knows of no split.
         if (hasDelta(v.bsdf)) {
             const BsdfEval f = evalBsdf(v.bsdf, v.wo, sample.wi);

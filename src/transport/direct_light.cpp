@@ -1,52 +1,10 @@
 #include "transport/direct_light.h"
 
-#include "base/error.h"
 #include "sampling/mis.h"
-#include "transport/cone.h"
 
 namespace lsde {
 
-namespace {
-
-constexpr size_t kMostEmitters = 8;
-// Of a hemisphere, by the cosine: where emitters may take this share, each walk looks for them.
-constexpr float kNearEmitters = 0.125F;
-
-}  // namespace
-
-LightSampler::LightSampler(const Scene& scene, const std::vector<bool>& selected) {
-    std::vector<double> weights(scene.lights().size());
-    double total = 0;
-    size_t count = 0;
-    for (size_t i = 0; i < weights.size(); ++i) {
-        if (!selected[i]) continue;
-        weights[i] = luminance(scene.lights()[i].power());
-        total += weights[i];
-        ++count;
-    }
-    if (count == 0) throw Error(scene.description().file.string() + ": no light is selected");
-    // A fifth of the choice is even, the rest by power.
-    for (size_t i = 0; i < weights.size(); ++i)
-        if (selected[i])
-            weights[i] = 0.2 / static_cast<double>(count) +
-                         (total > 0 ? 0.8 * weights[i] / total : 0.8 / static_cast<double>(count));
-    choice_ = DiscreteDistribution(weights);
-    std::vector<Sphere> emitters;
-    for (size_t i = 0; i < weights.size(); ++i)
-        if (const auto* area = std::get_if<AreaLight>(&scene.lights()[i].shape); area != nullptr && selected[i])
-            emitters.push_back({area->bounds.centre(), area->bounds.radius()});
-    onePoint_ = count == 1 && emitters.empty();
-    if (!emitters.empty()) emitters_ = groupCasters(std::move(emitters), kMostEmitters);
-}
-
-float LightSampler::bsdfSamples(const Vertex& vertex) const {
-    const Vec3 normal = vertex.wo.z < 0 ? -vertex.surface.ns : vertex.surface.ns;
-    float share = 0;
-    for (const Caster& e : emitters_) share += cosineShare(coneTo(e.bounds, vertex.surface.position), normal);
-    return std::min(1.0F, share / kNearEmitters);
-}
-
-DirectLight sampleDirectLight(const Scene& scene, const LightSampler& lights, const Vertex& vertex,
+DirectLight sampleDirectLight(const Scene& scene, const LightChoice& lights, const Vertex& vertex,
                               const DirectLightQuery& query, float uLight, Vec2 u, WalkScratch& scratch) {
     DirectLight out;
     const size_t index = lights.choose(uLight);
@@ -72,7 +30,7 @@ DirectLight sampleDirectLight(const Scene& scene, const LightSampler& lights, co
     return out;
 }
 
-float directLightPdf(const Scene& scene, const LightSampler& lights, const Surface& hit, Vec3 wi, float distance) {
+float directLightPdf(const Scene& scene, const LightChoice& lights, const Surface& hit, Vec3 wi, float distance) {
     const auto index = static_cast<size_t>(scene.meshes()[hit.mesh].light);
     const auto& area = std::get<AreaLight>(scene.lights()[index].shape);
     const float cosine = std::fabs(glm::dot(hit.ng, wi));
