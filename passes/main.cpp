@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -25,6 +26,8 @@ namespace {
 using namespace lsde;
 using Json = nlohmann::json;
 namespace fs = std::filesystem;
+
+constexpr const char* kAllCameras = "all";
 
 RunContext* interruptible = nullptr;  // what the signal handler may touch
 
@@ -265,32 +268,86 @@ void settle(RenderOptions& o, const CLI::App& app) {
     for (const std::string& p : o.paths) s.paths.push_back(parseLayerRequest(p, ++number));
 }
 
+// "all" is every camera of the scene.
+std::vector<CameraDescription> camerasOf(const Scene& scene, const std::string& name) {
+    const auto& there = scene.description().cameras;
+    return name != kAllCameras || there.empty() ? std::vector{scene.camera(name == kAllCameras ? "" : name)} : there;
+}
+
+// OUT.NAME.exr for each of all cameras: what a file name may not hold is replaced, a name that comes again is numbered.
+std::vector<fs::path> picturesOf(const RenderOptions& o, const std::vector<CameraDescription>& cameras, bool all) {
+    if (!all) return {o.output};
+    std::vector<fs::path> files;
+    for (const CameraDescription& camera : cameras) {
+        std::string name = camera.name.empty() ? "camera" : camera.name;
+        for (char& c : name)
+            if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '-' && c != '_') c = '_';
+        const auto file = [&](const std::string& part) {
+            return fs::path(o.output).replace_extension("." + part + o.output.extension().string());
+        };
+        fs::path next = file(name);
+        for (int i = 2; std::find(files.begin(), files.end(), next) != files.end(); ++i)
+            next = file(name + "-" + std::to_string(i));
+        files.push_back(next);
+    }
+    return files;
+}
+
+void writePicture(const fs::path& file, const RenderResult& r, RunContext& run) {
+    const PhaseTimer timer(run, "write picture");
+    writeExr(file, r.image, r.metadata);
+    writePng(fs::path(file).replace_extension(".png"), r.picture);
+}
+
+Json pictureFigures(const fs::path& file, const RenderResult& r) {
+    Json j;
+    j["samplesPerPixel"] = r.samples;
+    j["notFinite"] = r.notFinite;
+    j["bytes"] = fs::file_size(file);
+    return j;
+}
+
+void checkPictures(const std::vector<fs::path>& files, const CommonOptions& common) {
+    for (const fs::path& file : files) checkOutputs({file, fs::path(file).replace_extension(".png")}, common);
+}
+
 int runRender(RenderOptions& o, const CommonOptions& common, const CLI::App& app, RunContext& run) {
     settle(o, app);
     const IntegratorEntry& method = integratorByName(o.integrator);
-    const fs::path png = fs::path(o.output).replace_extension(".png");
-    checkOutputs({o.output, png, common.json}, common);
+    const bool all = o.settings.camera == kAllCameras;
+    if (!all) checkPictures({o.output}, common);
+    checkOutputs({common.json}, common);
     // Expressions are refused before the scene is loaded.
     const RenderLayers layers(o.settings.paths, o.settings.only);
     const auto scene = loadScene(o.scene, common, run);
-    const RenderResult r = renderPicture(*scene, method, o.settings, run);
-    {
-        const PhaseTimer timer(run, "write picture");
-        writeExr(o.output, r.image, r.metadata);
-        writePng(png, r.picture);
-    }
+    const std::vector<CameraDescription> cameras = camerasOf(*scene, o.settings.camera);
+    const std::vector<fs::path> files = picturesOf(o, cameras, all);
+    if (all) checkPictures(files, common);
+    bool interrupted = false;
+    Json shared, pictures = Json::array();
+    renderPictures(*scene, method, o.settings, cameras, run, [&](size_t camera, RenderResult&& r) {
+        writePicture(files[camera], r, run);
+        run.info(fmt::format("{}: {} samples a pixel, {} light paths, {:.1f} CPU s", files[camera].string(), r.samples,
+                             r.photons, cpuSeconds()));
+        pictures.push_back(pictureFigures(files[camera], r));
+        if (all) {
+            pictures.back()["file"] = files[camera].string();
+            pictures.back()["camera"] = cameras[camera].name;
+        }
+        shared["photonsEmitted"] = r.photons;
+        shared["photonsStored"] = {{"caustic", r.storedPhotons}, {"indirect", r.storedIndirect}};
+        if (r.passes > 0) shared["progressivePasses"] = r.passes;
+        if (!r.cachedMap.empty()) shared["cachedMap"] = r.cachedMap.string();
+        interrupted = r.interrupted;
+    });
     Json j = runFigures(run);
-    j["samplesPerPixel"] = r.samples;
-    j["photonsEmitted"] = r.photons;
-    j["photonsStored"] = {{"caustic", r.storedPhotons}, {"indirect", r.storedIndirect}};
-    if (r.passes > 0) j["progressivePasses"] = r.passes;
-    j["notFinite"] = r.notFinite;
-    if (!r.cachedMap.empty()) j["cachedMap"] = r.cachedMap.string();
-    j["bytes"] = fs::file_size(o.output);
+    j.update(shared);
+    if (all)
+        j["pictures"] = pictures;
+    else
+        j.update(pictures.front());
     writeJson(common.json, j);
-    run.info(fmt::format("{}: {} samples a pixel, {} light paths, {:.1f} CPU s", o.output.string(), r.samples,
-                         r.photons, cpuSeconds()));
-    if (r.interrupted) throw Interrupted(run.interruptSignal);
+    if (interrupted) throw Interrupted(run.interruptSignal);
     return 0;
 }
 
@@ -313,7 +370,8 @@ void addRender(CLI::App& app, RenderOptions& o) {
         ->type_name("WxH");
     app.add_option("--crop", o.crop, "only these pixels of the picture")->type_name("X0,Y0,X1,Y1");
     app.add_option("--camera", o.settings.camera,
-                   "camera by name (default: the first; without one, the scene is framed)")
+                   "camera by name (default: the first; without one, the scene is framed); all: a picture of each by "
+                   "one map, OUT.NAME.exr")
         ->type_name("NAME");
     app.add_option("--paths", o.paths,
                    "Heckbert expression, light first, as a layer of its own: EXPR=NAME (may be repeated)")

@@ -68,8 +68,7 @@ float progressiveScale(uint32_t pass) {  // Knaus & Zwicker 2011, eq. 20, a = 2/
     return static_cast<float>(std::sqrt(ratio));
 }
 
-Camera makeCamera(const Scene& scene, const RenderSettings& settings) {
-    const CameraDescription d = scene.camera(settings.camera);
+Camera makeCamera(const CameraDescription& d, const RenderSettings& settings) {
     const auto size = pictureSize(d, settings.size);
     Camera camera(d, size[0], size[1]);
     if (!settings.crop) return camera;
@@ -83,63 +82,85 @@ Camera makeCamera(const Scene& scene, const RenderSettings& settings) {
 
 class Render {
   public:
-    Render(const Scene& scene, const IntegratorEntry& method, const RenderSettings& settings, RunContext& run)
+    Render(const Scene& scene, const IntegratorEntry& method, const RenderSettings& settings,
+           std::span<const CameraDescription> cameras, RunContext& run)
         : scene_(scene),
           settings_(settings),
           run_(run),
           method_(method),
           layers_(settings.paths, settings.only),
           selected_(scene.lightSelection(settings.lights)),
-          camera_(makeCamera(scene, settings)),
           clock_(settings.cpuLimit, settings.wallLimit) {
         if (scene.lights().empty())
             throw Error(
                 fmt::format("{}: no light in the scene: expected an emissive material or a light of "
                             "KHR_lights_punctual",
                             scene.description().file.string()));
+        for (const CameraDescription& camera : cameras) cameras_.push_back(makeCamera(camera, settings));
+        if (settings.progressive > 0 && cameras_.size() > 1)
+            throw UsageError(
+                "--progressive: emits maps for a picture of its own, cannot be combined with --camera all");
         if (const std::string missing = method_.cannotMake(scene); !missing.empty()) run.warn(missing);
     }
 
-    RenderResult picture() {
+    void pictures(const OnPicture& onPicture) {
         samples_ = settings_.spp;
         if (!clock_.limited() && !samples_) samples_ = kDefaultSamples;
-        if (settings_.progressive > 0 && method_.usesPhotons)
+        if (settings_.progressive > 0 && method_.usesPhotons) {
             progressivePasses();
-        else
-            onePass();
-        result_.image = mean_.file(layers_.filmLayers());
-        result_.picture = mean_.full();
-        result_.metadata =
-            describePicture(scene_, camera_, layers_,
-                            {method_.name, settings_.only.value_or(""), run_.seed, result_.photons, result_.samples});
-        if (result_.notFinite > 0)
-            run_.warn(fmt::format("{} contributions were not finite and were left out", result_.notFinite));
-        return std::move(result_);
+            onPicture(0, finished());
+            return;
+        }
+        preparePhotons();
+        for (frame_ = 0; frame_ < cameras_.size() && !result_.interrupted; ++frame_) {
+            mean_ = {};
+            result_.samples = 0;
+            result_.notFinite = 0;
+            SampleLimits limits{0, samples_, {}, reserve()};
+            if (clock_.limited())
+                limits.clock = clock_.slice(clock_.left() / static_cast<double>(cameras_.size() - frame_));
+            see(gather_ ? &*gather_ : nullptr, limits, 1);
+            onPicture(frame_, finished());
+        }
     }
 
   private:
+    const Camera& camera() const { return cameras_[frame_]; }
+
+    RenderResult finished() const {
+        RenderResult r = result_;
+        r.image = mean_.file(layers_.filmLayers());
+        r.picture = mean_.full();
+        r.metadata = describePicture(scene_, camera(), layers_,
+                                     {method_.name, settings_.only.value_or(""), run_.seed, r.photons, r.samples});
+        if (r.notFinite > 0) run_.warn(fmt::format("{} contributions were not finite and were left out", r.notFinite));
+        return r;
+    }
+
     double emissionShare() const {
-        const double pixels = filledShare() * static_cast<double>(camera_.filmWidth()) * camera_.filmHeight();
+        double pixels = 0;
+        for (const Camera& c : cameras_)
+            pixels += filledShare(c) * static_cast<double>(c.filmWidth()) * static_cast<double>(c.filmHeight());
         return std::clamp(1 - kPixelSeconds * pixels / clock_.limit(), kLeastEmissionShare, kMostEmissionShare);
     }
 
     // Of the picture: where there is anything to see.
-    double filledShare() const {
+    double filledShare(const Camera& camera) const {
         constexpr int kSide = 64;
         int hits = 0;
         for (int y = 0; y < kSide; ++y)
             for (int x = 0; x < kSide; ++x) {
                 const Vec2 at((static_cast<float>(x) + 0.5F) / kSide, (static_cast<float>(y) + 0.5F) / kSide);
                 const Vec2 pixel =
-                    Vec2(camera_.filmX(), camera_.filmY()) + at * Vec2(camera_.filmWidth(), camera_.filmHeight());
+                    Vec2(camera.filmX(), camera.filmY()) + at * Vec2(camera.filmWidth(), camera.filmHeight());
                 Hit hit;
-                if (scene_.accel().intersect(camera_.ray(pixel, Vec2(0)).ray, hit)) ++hits;
+                if (scene_.accel().intersect(camera.ray(pixel, Vec2(0)).ray, hit)) ++hits;
             }
         return static_cast<double>(hits) / (kSide * kSide);
     }
 
     double reserve() const {  // s: developing and writing the picture
-        const double values = static_cast<double>(camera_.filmWidth()) * camera_.filmHeight() * 3 *
+        const double values = static_cast<double>(camera().filmWidth()) * camera().filmHeight() * 3 *
                               static_cast<double>(layers_.filmLayers().size());
         return 0.02 + 6e-8 * values;
     }
@@ -183,7 +204,7 @@ class Render {
 
     // The camera pass, and its picture added to the mean; returns the samples taken.
     uint64_t see(const PhotonGather* photons, const SampleLimits& limits, double weight) {
-        const auto integrator = method_.make({scene_, camera_, layers_, selected_, photons, run_.seed});
+        const auto integrator = method_.make({scene_, camera(), layers_, selected_, photons, run_.seed});
         const uint64_t done = takeSamples(*integrator, limits, run_, result_.interrupted);
         std::vector<RgbImage> pictures;
         pictures.reserve(layers_.filmLayers().size());
@@ -195,18 +216,13 @@ class Render {
         return done;
     }
 
-    void onePass() {
-        PhotonMap photonMap;
-        std::optional<PhotonGather> gather;
-        if (method_.usesPhotons && (layers_.wantsCaustic() || indirectFromMap())) {
-            photonMap = map();
-            note(photonMap);
-            if (!noCaustics_.empty()) run_.warn(noCaustics_);
-            gather.emplace(gatherInput(photonMap), gatherSettings(), run_);
-        }
-        SampleLimits limits{0, samples_, {}, reserve()};
-        if (clock_.limited()) limits.clock = clock_;
-        see(gather ? &*gather : nullptr, limits, 1);
+    // What all pictures share.
+    void preparePhotons() {
+        if (!method_.usesPhotons || !(layers_.wantsCaustic() || indirectFromMap())) return;
+        map_ = map();
+        note(map_);
+        if (!noCaustics_.empty()) run_.warn(noCaustics_);
+        gather_.emplace(gatherInput(map_), gatherSettings(), run_);
     }
 
     void progressivePasses();
@@ -217,11 +233,14 @@ class Render {
     const IntegratorEntry& method_;
     RenderLayers layers_;
     std::vector<bool> selected_;
-    Camera camera_;
+    std::vector<Camera> cameras_;
+    size_t frame_ = 0;  // the camera whose picture is being made
     Clock clock_;
     std::optional<uint64_t> samples_;
     std::optional<std::vector<Segment>> creases_;
     std::string noCaustics_;
+    PhotonMap map_;
+    std::optional<PhotonGather> gather_;
     PictureMean mean_;
     RenderResult result_;
 };
@@ -281,9 +300,17 @@ void Render::progressivePasses() {
 
 }  // namespace
 
+void renderPictures(const Scene& scene, const IntegratorEntry& method, const RenderSettings& settings,
+                    std::span<const CameraDescription> cameras, RunContext& run, const OnPicture& onPicture) {
+    Render(scene, method, settings, cameras, run).pictures(onPicture);
+}
+
 RenderResult renderPicture(const Scene& scene, const IntegratorEntry& method, const RenderSettings& settings,
                            RunContext& run) {
-    return Render(scene, method, settings, run).picture();
+    RenderResult result;
+    const std::array cameras{scene.camera(settings.camera)};
+    renderPictures(scene, method, settings, cameras, run, [&](size_t, RenderResult&& r) { result = std::move(r); });
+    return result;
 }
 
 }  // namespace lsde

@@ -4,7 +4,9 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -52,7 +54,15 @@ struct RenderResult {
     bool interrupted = false;
 };
 
-// Throws Error (bad input: names what differs), UsageError (settings that do not go together).
+// A picture of each camera, in order, all by one map that is emitted or loaded once (settings.camera is not looked at).
+// A time limit is of the whole run; the pictures share evenly what emission leaves. onPicture gets the camera's index;
+// after an interrupt no further picture is begun. Throws Error (bad input: names what differs), UsageError (settings
+// that do not go together).
+using OnPicture = std::function<void(size_t camera, RenderResult&& result)>;
+void renderPictures(const Scene& scene, const IntegratorEntry& method, const RenderSettings& settings,
+                    std::span<const CameraDescription> cameras, RunContext& run, const OnPicture& onPicture);
+
+// The picture of settings.camera.
 RenderResult renderPicture(const Scene& scene, const IntegratorEntry& method, const RenderSettings& settings,
                            RunContext& run);
 

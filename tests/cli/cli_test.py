@@ -237,6 +237,29 @@ class Maps(Cli):
         self.emit()
         self.run_lsde('render', self.glb(turn), '--map', 'm.lsmap', '-o', 'a.exr', *FAST)
 
+    def test_all_cameras_get_a_picture_each_by_one_map(self):
+        """A frame among others is byte for byte the one rendered alone."""
+        def add(d):
+            first = next(n for n in d['nodes'] if 'camera' in n)
+            for name, x in (('left side', -1), ('left/side', 1)):
+                d['cameras'].append(d['cameras'][0] | {'name': name})
+                d['nodes'].append({'camera': len(d['cameras']) - 1, 'translation': [x, *first['translation'][1:]], 'rotation': first['rotation']})
+                d['scenes'][0]['nodes'].append(len(d['nodes']) - 1)
+        scene = self.glb(add)
+        self.emit('m.lsmap', scene)
+        given = ['render', scene, '--map', 'm.lsmap', *FAST]
+        figures = json.loads(self.run_lsde(*given, '--camera', 'all', '-o', 'f.exr', '--json', '-').stdout)
+        names = ['f.camera.exr', 'f.left_side.exr', 'f.left_side-2.exr']
+        self.assertEqual([p['file'] for p in figures['pictures']], names)
+        self.assertEqual([p['camera'] for p in figures['pictures']], ['camera', 'left side', 'left/side'])
+        for camera, name in zip(('camera', 'left side', 'left/side'), names):
+            self.run_lsde(*given, '--camera', camera, '-o', 'alone.exr', '--force')
+            self.assertEqual((self.folder / name).read_bytes(), (self.folder / 'alone.exr').read_bytes())
+            self.assertTrue((self.folder / name).with_suffix('.png').exists())
+        self.assertFalse((self.folder / 'f.exr').exists())
+        self.refused(*given, '--camera', 'all', '-o', 'f.exr', says='f.camera.exr')
+        self.refused('render', scene, '--camera', 'all', '-o', 'g.exr', '--progressive', '2', says='--camera all', code=2)
+
     def test_merging_refuses_overlaps_and_other_seeds(self):
         a = self.emit('a.lsmap', SPHERE, '--shard', '1/2')
         b = self.emit('b.lsmap', SPHERE, '--shard', '2/2')
