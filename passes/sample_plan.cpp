@@ -1,6 +1,7 @@
 #include "passes/sample_plan.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <numeric>
@@ -29,21 +30,29 @@ std::vector<float> SamplePlan::noiseAround(const std::vector<SampleStatistics>& 
         variance[i] =
             static_cast<float>(square((first - second) / n) / (square((first + second) / n) + mean * mean + 1e-30));
     }
-    std::vector<float> noise(variance.size());
+    // The sum over the square around each pixel, along the rows and then along the columns.
+    const auto at = [this](int x, int y) {
+        return static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x);
+    };
+    const auto around = [](int centre, int size) {
+        return std::array{std::max(0, centre - kReach), std::min(size - 1, centre + kReach)};
+    };
+    std::vector<float> along(variance.size()), noise(variance.size());
     for (int y = 0; y < height_; ++y)
         for (int x = 0; x < width_; ++x) {
-            float sum = 0;
-            int count = 0;
-            for (int v = std::max(0, y - kReach); v <= std::min(height_ - 1, y + kReach); ++v)
-                for (int u = std::max(0, x - kReach); u <= std::min(width_ - 1, x + kReach); ++u) {
-                    if (u == x && v == y) continue;
-                    sum += variance[static_cast<size_t>(v) * static_cast<size_t>(width_) + static_cast<size_t>(u)];
-                    ++count;
-                }
-            if (count > 0)
-                noise[static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x)] =
-                    std::sqrt(sum / static_cast<float>(count));
+            const auto [first, last] = around(x, width_);
+            for (int u = first; u <= last; ++u) along[at(x, y)] += variance[at(u, y)];
         }
+    for (int y = 0; y < height_; ++y) {
+        const auto [top, bottom] = around(y, height_);
+        for (int x = 0; x < width_; ++x) {
+            float sum = 0;
+            for (int v = top; v <= bottom; ++v) sum += v == y ? along[at(x, v)] - variance[at(x, v)] : along[at(x, v)];
+            const auto [first, last] = around(x, width_);
+            const int count = (last - first + 1) * (bottom - top + 1) - 1;
+            if (count > 0) noise[at(x, y)] = std::sqrt(std::max(0.0F, sum) / static_cast<float>(count));
+        }
+    }
     return noise;
 }
 
