@@ -11,7 +11,8 @@ namespace lsde {
 // Luminance of a pixel's first samples, in two halves, each as evenly distributed as the whole: their difference shows
 // the noise that is left, where the spread of single samples does not.
 struct SampleStatistics {
-    static constexpr uint64_t kSamples = 8;
+    // Few: what every pixel must have is lost to those that need more.
+    static constexpr uint64_t kSamples = 2;
 
     float sum[2] = {0, 0};
 
