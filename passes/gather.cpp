@@ -46,11 +46,11 @@ float radiusAtMean(const GatherInput& input, PhotonClass c, float count) {
     return static_cast<float>(std::sqrt(count * area / (kPi * static_cast<double>(tree.count))));
 }
 
-// The radius that holds `count` photons around nearly all of them: by area most of a stadium is dark, and the radius of
+// The radius that holds kNear photons around nearly all of them: by area most of a stadium is dark, and the radius of
 // the mean density would reach over all there is to see.
-float radiusAtMost(const PhotonTreeView& tree, const AnyIndex& index, float count) {
+constexpr uint32_t kNear = 50;
+float radiusAtMost(const PhotonTreeView& tree, const AnyIndex& index) {
     constexpr size_t kSampled = 256;
-    constexpr uint32_t kNear = 50;
     constexpr double kShare = 0.95;
     constexpr float kBeyond = 3;
     if (tree.count <= kNear) return kInfinity;
@@ -61,7 +61,7 @@ float radiusAtMost(const PhotonTreeView& tree, const AnyIndex& index, float coun
         radii.push_back(distanceToKth(index, tree.position(i), kNear, kInfinity, scratch));
     const auto most = radii.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<double>(radii.size()));
     std::nth_element(radii.begin(), most, radii.end());
-    return kBeyond * *most * std::sqrt(count / static_cast<float>(kNear));
+    return kBeyond * *most;
 }
 
 // A pilot radius may exceed that of the mean density, where photons are sparse.
@@ -114,8 +114,11 @@ ClassGather::ClassGather(const GatherInput& input, PhotonClass c, IndexKind kind
       rule_(rule),
       progressive_(progressive),
       groups_(groupsOf(input, tree_, run)),
-      maxRadius_(std::min(radiusAtMean(input, c, rule.growthAtMean), radiusAtMost(tree_, index_, rule.growthAtMean))),
-      reach_(std::min(radiusAtMean(input, c, rule.reachAtMean), radiusAtMost(tree_, index_, rule.reachAtMean))) {
+      maxRadius_(radiusAtMean(input, c, rule.growthAtMean)),
+      reach_(radiusAtMean(input, c, rule.reachAtMean)) {
+    const float most = radiusAtMost(tree_, index_);
+    maxRadius_ = std::min(maxRadius_, most * std::sqrt(rule.growthAtMean / static_cast<float>(kNear)));
+    reach_ = std::min(reach_, most * std::sqrt(rule.reachAtMean / static_cast<float>(kNear)));
     if (progressive.pilot != nullptr) maxRadius_ *= kPilotRadius;
     extent_ = SurfaceExtent(input.creases, std::max(maxRadius_, reach_));
     const uint64_t paths = input.map.header.emittedPaths();
