@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "passes/emission_pilot.h"
 
 namespace lsde {
 
@@ -27,6 +28,7 @@ Emission::Emission(const Scene& scene, const EmitSettings& settings, RunContext&
       diffuseAim_(scene, settings.aim ? kPilotDiffuseBoost : 0),
       tracer_{scene_, sources_, diffuseAim_, settings_.store, settings_.maxDepth, seed_},
       ledger_(scene.lights().size(), scene.objects().size()) {
+    if (settings_.aim) sources_.learn(tryAims(tracer_, run.pool));
     const PilotFindings found = pilotEmission(tracer_, run.pool);
     tracer_.fairPower = found.fairPower;
     if (settings_.aim) diffuseAim_ = DiffuseAim(scene, found.diffuseBoost);

@@ -18,8 +18,10 @@ class LightTracer {
         const Rgb total = in_.sources.totalPower();
         enter(LedgerColumn::Emitted, total);
         LightPathStart start;
+        for (size_t c = 0; c < kPhotonClasses; ++c) photonsBefore_[c] = out_.photons[c].size();
         if (!in_.sources.sample(sampler, start)) {
             enter(LedgerColumn::Sampling, total);
+            if (in_.keepStarts) keepStart(start);
             return;
         }
         move(LedgerColumn::Sampling, total, start.power);
@@ -37,6 +39,7 @@ class LightTracer {
             waiting_.pop_back();
             follow(path);
         }
+        if (in_.keepStarts) keepStart(start);
     }
     uint64_t rays() const { return scratch_.rays; }
 
@@ -56,6 +59,13 @@ class LightTracer {
     void move(LedgerColumn column, Rgb before, Rgb after) {
         if (before == after) return;
         out_.ledger[column] += FixedRgb(before) - FixedRgb(after);
+    }
+
+    void keepStart(const LightPathStart& start) {
+        TracedStart& kept = out_.starts.emplace_back();
+        kept.aim = {start.light, start.part, {start.u, 0}};
+        for (size_t c = 0; c < kPhotonClasses; ++c)
+            kept.photons[c] = static_cast<uint32_t>(out_.photons[c].size() - photonsBefore_[c]);
     }
 
     void follow(LightPath& path) {
@@ -216,6 +226,7 @@ class LightTracer {
     uint64_t index_ = 0;
     uint64_t stored_ = 0;  // photons of this path
     bool delta_ = false;
+    std::array<size_t, kPhotonClasses> photonsBefore_{};
     std::vector<LightPath> waiting_;
 };
 
@@ -236,44 +247,6 @@ AfterDiffuse& AfterDiffuse::operator+=(const AfterDiffuse& other) {
     seeingPaths += other.seeingPaths;
     inCones += other.inCones;
     return *this;
-}
-
-PilotFindings pilotEmission(LightTracerInput input, ThreadPool& pool) {
-    constexpr uint64_t kPaths = 8192, kPathsPerChunk = 512;
-    // Of light that met a D, the share of rays that follow what is aimed at casters: as much as escapes unaimed.
-    constexpr double kLeastAimed = 0.25, kMostAimed = 0.9;
-    // Rays of light that met a D, for each other ray: as its flux is to that of caustics, within bounds.
-    constexpr double kLeastRaysAfterDiffuse = 0.25, kMostRaysAfterDiffuse = 2;
-    constexpr uint64_t kRaysOfAimed = 4;  // where none was seen
-    input.fairPower = input.sources.fairPower();
-    if (input.store == Store::Caustic) return {input.fairPower, kPilotDiffuseBoost};
-    input.stage = Stage::EmissionPilot;
-    std::vector<LightPaths> results(kPaths / kPathsPerChunk);
-    pool.forEach(results.size(),
-                 [&](size_t i) { results[i] = traceLightPaths(input, i * kPathsPerChunk, (i + 1) * kPathsPerChunk); });
-    Ledger ledger(input.scene.lights().size(), input.scene.objects().size());
-    AfterDiffuse after;
-    uint64_t rays = 0;
-    for (const LightPaths& paths : results) {
-        ledger.merge(paths.ledger);
-        after += paths.afterDiffuse;
-        rays += paths.rays;
-    }
-    const double caustic = ledger.fluxOf(static_cast<size_t>(PhotonClass::Caustic));
-    const double indirect = ledger.fluxOf(static_cast<size_t>(PhotonClass::Indirect));
-    const double share = caustic > 0 ? std::clamp(indirect / caustic, kLeastRaysAfterDiffuse, kMostRaysAfterDiffuse)
-                                     : kMostRaysAfterDiffuse;
-    const auto unaimed = static_cast<double>(after.rays);
-    const double wanted = share * static_cast<double>(rays - after.aimedRays - after.rays);
-    const double escaped = static_cast<double>(after.escaped) / std::max<double>(1, static_cast<double>(after.bounces));
-    const double aimedShare = std::clamp(escaped, kLeastAimed, kMostAimed);
-    const double seeing = after.seeingPaths / std::max(after.lobePaths, 1e-30);
-    const double aimed = unaimed * seeing * aimedShare / (1 - aimedShare);
-    const double fairer = std::clamp((unaimed + aimed) / std::max(1.0, wanted), 1.0 / 64, 4.0);
-    const double raysOfAimed =
-        static_cast<double>(after.aimedRays + kRaysOfAimed) / static_cast<double>(after.aimedBounces + 1);
-    const double boost = aimed > 0 ? aimed / (after.inCones * raysOfAimed) : 0;
-    return {input.fairPower * static_cast<float>(fairer), static_cast<float>(boost)};
 }
 
 LightPaths traceLightPaths(const LightTracerInput& input, uint64_t begin, uint64_t end) {

@@ -34,6 +34,13 @@ struct LightTracerInput {
     uint64_t seed = 0;
     float fairPower = 0;  // W: largest component of a photon's power once the light met a D, by splitting and roulette
     Stage stage = Stage::Emission;
+    bool keepStarts = false;
+};
+
+// Where a path started, and how many photons it left.
+struct TracedStart {
+    AimTrial aim;  // its worth not yet known
+    std::array<uint32_t, kPhotonClasses> photons{};
 };
 
 // Of light that left a Lambertian surface: towards casters (aimed) and by the surface's own lobe.
@@ -53,15 +60,8 @@ struct LightPaths {
     Ledger ledger;
     uint64_t rays = 0;
     AfterDiffuse afterDiffuse;
+    std::vector<TracedStart> starts;  // if they are kept: of each path
 };
-
-// What a pilot finds out, whose photons are discarded: a function of scene, settings and seed.
-struct PilotFindings {
-    float fairPower = 0;     // W: light that met a D then takes as many rays as its share is
-    float diffuseBoost = 0;  // of directions towards casters from diffuse surfaces: more where those of the lobe escape
-};
-PilotFindings pilotEmission(LightTracerInput input, ThreadPool& pool);
-inline constexpr float kPilotDiffuseBoost = 4;
 
 // Paths [begin, end) of the emission.
 LightPaths traceLightPaths(const LightTracerInput& input, uint64_t begin, uint64_t end);

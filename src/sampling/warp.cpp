@@ -27,6 +27,25 @@ Vec3 squareToCone(Vec2 u, float oneMinusCosMax) {
 
 float conePdf(float oneMinusCosMax) { return 1 / (2 * kPi * oneMinusCosMax); }
 
+Vec2 diskToSquare(Vec2 p) {
+    const float length = glm::length(p);
+    if (!(length > 0)) return {0.5F, 0.5F};
+    const bool horizontal = std::fabs(p.x) > std::fabs(p.y);
+    const float r = std::copysign(length, horizontal ? p.x : p.y);
+    const float other = r * (4 / kPi) * std::atan(horizontal ? p.y / p.x : p.x / p.y);
+    const Vec2 square = 0.5F * (horizontal ? Vec2(r, other) : Vec2(other, r)) + Vec2(0.5F);
+    return glm::clamp(square, 0.0F, kOneMinusEpsilon);
+}
+
+Vec2 cosineHemisphereToSquare(Vec3 direction) { return diskToSquare(direction); }
+
+Vec2 coneToSquare(Vec3 direction, float oneMinusCosMax) {
+    // |direction - z|^2 / 2 = 1 - cos, exact for narrow cones as well.
+    const float oneMinusCos = 0.5F * (square(direction.x) + square(direction.y) + square(direction.z - 1));
+    const float turn = std::atan2(direction.y, direction.x) / (2 * kPi);
+    return glm::clamp(Vec2(oneMinusCos / oneMinusCosMax, turn < 0 ? turn + 1 : turn), 0.0F, kOneMinusEpsilon);
+}
+
 Vec2 squareToTriangle(Vec2 u) {
     if (u.y > u.x) return {0.5F * u.x, u.y - 0.5F * u.x};
     return {u.x - 0.5F * u.y, 0.5F * u.y};

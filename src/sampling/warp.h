@@ -14,6 +14,10 @@ inline constexpr float kUniformSpherePdf = 0.25F * kInvPi;
 // exact. pdfW = 1 / (2 pi oneMinusCosMax).
 Vec3 squareToCone(Vec2 u, float oneMinusCosMax);
 float conePdf(float oneMinusCosMax);
+// The other way: the point of [0,1)^2 that is mapped there, to rounding.
+Vec2 diskToSquare(Vec2 p);
+Vec2 cosineHemisphereToSquare(Vec3 direction);
+Vec2 coneToSquare(Vec3 direction, float oneMinusCosMax);
 Vec2 squareToTriangle(Vec2 u);  // barycentric (b1, b2), uniform by area (Heitz 2019)
 // Visible normals of GGX (Heitz 2018): wo in the local frame, z > 0; returns the half vector.
 Vec3 sampleGgxVisibleNormal(Vec3 wo, float alphaX, float alphaY, Vec2 u);

@@ -4,8 +4,6 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "sampling/warp.h"
-#include "transport/cone.h"
 
 namespace lsde {
 
@@ -51,10 +49,19 @@ std::vector<Bounds> solidBounds(const Scene& scene) {
     return solids;
 }
 
-float wholePdf(const PointLight& light, Vec3 direction) {
-    if (!light.isSpot()) return kUniformSpherePdf;
-    return 0.5F * lengthSquared(direction - light.axis) <= light.oneMinusCosOuter ? conePdf(light.oneMinusCosOuter) : 0;
+DirectionMap wholeEmission(const PointLight& light) {
+    return light.isSpot() ? DirectionMap::within(light.axis, light.oneMinusCosOuter) : DirectionMap::everywhere();
 }
+
+// From inside its target a part aims at the whole emission.
+DirectionMap directionsOf(const Cone& cone, const DirectionMap& all) {
+    return cone.everything ? all : DirectionMap::within(cone.axis, cone.oneMinusCos);
+}
+
+PrimaryPoint primaryPoint(Vec2 first, Vec2 second) { return {first.x, first.y, second.x, second.y}; }
+
+// How many of its numbers choose where a light's path starts and goes, and so can be learnt.
+int dimensionsOf(const Light& light) { return std::holds_alternative<AreaLight>(light.shape) ? 4 : 2; }
 
 }  // namespace
 
@@ -118,6 +125,7 @@ DiscreteDistribution EmissionSampler::partsOf(const Light& light) const {
 EmissionSampler::Aim EmissionSampler::aimOf(const Light& light, const std::vector<Bounds>& solids) const {
     Aim out;
     out.parts = partsOf(light);
+    out.positioned = dimensionsOf(light) == 4;
     if (const auto* point = std::get_if<PointLight>(&light.shape)) out.media = scene_.mediaAt(point->position);
     if (const auto* area = std::get_if<AreaLight>(&light.shape))
         out.mayStartInside =
@@ -125,75 +133,105 @@ EmissionSampler::Aim EmissionSampler::aimOf(const Light& light, const std::vecto
     return out;
 }
 
-float EmissionSampler::aimedConePdf(const Aim& aim, Vec3 position, Vec3 direction, float whole, size_t drawn) const {
+void EmissionSampler::learn(std::span<const AimTrial> trials) {
+    for (size_t light = 0; light < aims_.size(); ++light) {
+        std::vector<std::vector<PrimaryDensity::Trial>> ofPart(aims_[light].parts.size());
+        for (const AimTrial& t : trials)
+            if (t.light == light) ofPart[t.part].push_back(t.trial);
+        aims_[light].learnt.assign(ofPart.size(), {});
+        // The whole emission stays as it is: it bounds the weights of all that was learnt wrongly.
+        for (size_t part = 1; part < ofPart.size(); ++part)
+            aims_[light].learnt[part] = PrimaryDensity(std::move(ofPart[part]), dimensionsOf(scene_.lights()[light]));
+    }
+}
+
+EmissionSampler::Draw EmissionSampler::draw(const Aim& aim, size_t part, PrimaryPoint& u) {
+    Draw drawn{part, 1};
+    if (!aim.learnt.empty()) u = aim.learnt[part].sample(u, drawn.learnt);
+    return drawn;
+}
+
+float EmissionSampler::learntDensity(const Aim& aim, size_t part, const PrimaryPoint& u, Draw drawn) {
+    if (part == drawn.part) return drawn.learnt;
+    return aim.learnt.empty() ? 1 : aim.learnt[part].pdf(u);
+}
+
+float EmissionSampler::aimedConePdf(const Aim& aim, Vec3 position, Vec3 direction, const DirectionMap& all,
+                                    const PrimaryPoint& u, Draw drawn) const {
     float pdf = 0;
     for (size_t i = 1; i < aim.parts.size(); ++i) {
         if (!(aim.parts.pmf(i) > 0)) continue;
         const Cone cone = coneTo(targets_[i - 1], position);
-        if (i == drawn || within(cone, direction))
-            pdf += aim.parts.pmf(i) * (cone.everything ? whole : conePdf(cone.oneMinusCos));
+        if (i != drawn.part && !within(cone, direction)) continue;
+        PrimaryPoint there{};
+        if (i != drawn.part && !aim.learnt.empty()) {
+            const Vec2 square = directionsOf(cone, all).square(direction);
+            there = aim.positioned ? primaryPoint({u[0], u[1]}, square) : primaryPoint(square, Vec2(0));
+        }
+        pdf += aim.parts.pmf(i) * learntDensity(aim, i, there, drawn) *
+               (cone.everything ? all.pdf(direction) : conePdf(cone.oneMinusCos));
     }
     return pdf;
 }
 
-float EmissionSampler::aimedDiscPdf(const Aim& aim, const DirectionalLight& light, Vec3 position, size_t drawn) const {
+float EmissionSampler::aimedDiscPdf(const Aim& aim, const DirectionalLight& light, Vec3 position, Draw drawn) const {
     const Frame frame(light.direction);
     float pdf = 0;
     for (size_t i = 1; i < aim.parts.size(); ++i) {
         const Sphere& s = targets_[i - 1];
         const Vec2 d = discOffset(s, position, frame);
-        if (i == drawn || glm::dot(d, d) <= square(s.radius)) pdf += aim.parts.pmf(i) / (kPi * square(s.radius));
+        if (i != drawn.part && glm::dot(d, d) > square(s.radius)) continue;
+        const PrimaryPoint there = primaryPoint(diskToSquare(d / s.radius), Vec2(0));
+        pdf += aim.parts.pmf(i) * learntDensity(aim, i, there, drawn) / (kPi * square(s.radius));
     }
     return pdf;
 }
 
-bool EmissionSampler::sampleArea(const AreaLight& light, const Aim& aim, size_t part, Sampler& sampler,
+bool EmissionSampler::sampleArea(const AreaLight& light, const Aim& aim, Sampler& sampler,
                                  LightPathStart& start) const {
-    const Vec2 uPosition = sampler.next2D(), uDirection = sampler.next2D();
+    const Vec2 uPosition = sampler.next2D();
+    start.u = primaryPoint(uPosition, sampler.next2D());
+    const Draw drawn = draw(aim, start.part, start.u);
     sampler.skipTo(5);
-    const EmissionPoint e = light.samplePoint(uPosition, sampler.next());
-    const Frame frame(e.normal);
+    const EmissionPoint e = light.samplePoint({start.u[0], start.u[1]}, sampler.next());
+    const DirectionMap all = DirectionMap::lambert(e.normal);
     Cone cone;
-    if (part > 0) cone = coneTo(targets_[part - 1], e.position);
-    const Vec3 direction = cone.everything ? frame.toWorld(squareToCosineHemisphere(uDirection))
-                                           : Frame(cone.axis).toWorld(squareToCone(uDirection, cone.oneMinusCos));
-    const float cosine = glm::dot(direction, e.normal);
-    if (!(cosine > 0)) return false;
-    const float whole = cosineHemispherePdf(cosine);
-    const float mixture = aim.parts.pmf(0) * whole + aimedConePdf(aim, e.position, direction, whole, part);
+    if (start.part > 0) cone = coneTo(targets_[start.part - 1], e.position);
+    const Vec3 direction = directionsOf(cone, all).direction({start.u[2], start.u[3]});
+    const float whole = all.pdf(direction);
+    if (!(whole > 0)) return false;
+    const float mixture = aim.parts.pmf(0) * whole + aimedConePdf(aim, e.position, direction, all, start.u, drawn);
     start.ray = {offsetOrigin(e.position, e.normal, direction, e.epsilon), direction, kInfinity};
-    start.power = e.radiance * (cosine / (e.pdfA * mixture));
+    start.power = e.radiance * (glm::dot(direction, e.normal) / (e.pdfA * mixture));
     start.aimWeight = whole / mixture;
     return true;
 }
 
-bool EmissionSampler::samplePoint(const PointLight& light, const Aim& aim, size_t part, Sampler& sampler,
+bool EmissionSampler::samplePoint(const PointLight& light, const Aim& aim, Sampler& sampler,
                                   LightPathStart& start) const {
-    const Vec2 u = sampler.next2D();
+    start.u = primaryPoint(sampler.next2D(), Vec2(0));
+    const Draw drawn = draw(aim, start.part, start.u);
+    const DirectionMap all = wholeEmission(light);
     Cone cone;
-    if (part > 0) cone = coneTo(targets_[part - 1], light.position);
-    Vec3 direction;
-    if (!cone.everything)
-        direction = Frame(cone.axis).toWorld(squareToCone(u, cone.oneMinusCos));
-    else if (light.isSpot())
-        direction = Frame(light.axis).toWorld(squareToCone(u, light.oneMinusCosOuter));
-    else
-        direction = squareToSphere(u);
+    if (start.part > 0) cone = coneTo(targets_[start.part - 1], light.position);
+    const Vec3 direction = directionsOf(cone, all).direction({start.u[0], start.u[1]});
     const float falloff = light.falloff(direction);
     if (!(falloff > 0)) return false;
-    const float whole = wholePdf(light, direction);
-    const float mixture = aim.parts.pmf(0) * whole + aimedConePdf(aim, light.position, direction, whole, part);
+    const float whole = all.pdf(direction);
+    const float mixture = aim.parts.pmf(0) * whole + aimedConePdf(aim, light.position, direction, all, start.u, drawn);
     start.ray = {light.position, direction, kInfinity};
     start.power = light.intensity * (falloff / mixture);
     start.aimWeight = whole / mixture;
     return true;
 }
 
-void EmissionSampler::sampleDirectional(const DirectionalLight& light, const Aim& aim, size_t part, Sampler& sampler,
+void EmissionSampler::sampleDirectional(const DirectionalLight& light, const Aim& aim, Sampler& sampler,
                                         LightPathStart& start) const {
-    const Vec2 u = squareToDisk(sampler.next2D());
+    start.u = primaryPoint(sampler.next2D(), Vec2(0));
+    const Draw drawn = draw(aim, start.part, start.u);
+    const Vec2 u = squareToDisk({start.u[0], start.u[1]});
     const Frame frame(light.direction);
-    const Sphere& disc = part > 0 ? targets_[part - 1] : light.scene;
+    const Sphere& disc = start.part > 0 ? targets_[start.part - 1] : light.scene;
     const Vec3 inPlane = disc.centre + disc.radius * (u.x * frame.x + u.y * frame.y);
     // Back to a plane before the whole scene.
     const float back = glm::dot(inPlane - light.scene.centre, light.direction) + 1.01F * light.scene.radius;
@@ -201,7 +239,7 @@ void EmissionSampler::sampleDirectional(const DirectionalLight& light, const Aim
     const float whole = 1 / (kPi * square(light.scene.radius));
     const Vec2 offset = discOffset(light.scene, inPlane, frame);
     const bool inWhole = glm::dot(offset, offset) <= square(light.scene.radius);
-    const float mixture = (inWhole ? aim.parts.pmf(0) * whole : 0) + aimedDiscPdf(aim, light, inPlane, part);
+    const float mixture = (inWhole ? aim.parts.pmf(0) * whole : 0) + aimedDiscPdf(aim, light, inPlane, drawn);
     start.power = inWhole ? light.irradiance / mixture : Rgb(0);
     start.aimWeight = whole / mixture;
 }
@@ -213,16 +251,16 @@ bool EmissionSampler::sample(Sampler& sampler, LightPathStart& start) const {
     float u = choice.next();
     start.light = choice_.sample(u);
     const Aim& aim = aims_[start.light];
-    const size_t part = aim.parts.sample(u);
+    start.part = aim.parts.sample(u);
     const Light& light = scene_.lights()[start.light];
     start.media = aim.media;
     bool emits = true;
     if (const auto* area = std::get_if<AreaLight>(&light.shape))
-        emits = sampleArea(*area, aim, part, sampler, start);
+        emits = sampleArea(*area, aim, sampler, start);
     else if (const auto* point = std::get_if<PointLight>(&light.shape))
-        emits = samplePoint(*point, aim, part, sampler, start);
+        emits = samplePoint(*point, aim, sampler, start);
     else
-        sampleDirectional(std::get<DirectionalLight>(light.shape), aim, part, sampler, start);
+        sampleDirectional(std::get<DirectionalLight>(light.shape), aim, sampler, start);
     if (!emits || isBlack(start.power)) return false;
     start.power /= choice_.pmf(start.light);
     if (aim.mayStartInside) start.media = scene_.mediaAt(start.ray.origin);
@@ -230,15 +268,15 @@ bool EmissionSampler::sample(Sampler& sampler, LightPathStart& start) const {
     return true;
 }
 
-EmissionSampler::Densities EmissionSampler::directionDensities(size_t index, Vec3 position, Vec3 normal,
-                                                               Vec3 direction) const {
-    const Light& light = scene_.lights()[index];
+EmissionSampler::Densities EmissionSampler::directionDensities(size_t index, Vec3 position, Vec3 normal, Vec3 direction,
+                                                               Vec2 uPosition) const {
+    const auto* point = std::get_if<PointLight>(&scene_.lights()[index].shape);
+    const DirectionMap all = point != nullptr ? wholeEmission(*point) : DirectionMap::lambert(normal);
+    const Aim& aim = aims_[index];
     Densities d;
-    if (const auto* point = std::get_if<PointLight>(&light.shape))
-        d.whole = wholePdf(*point, direction);
-    else
-        d.whole = cosineHemispherePdf(glm::dot(direction, normal));
-    d.mixture = aims_[index].parts.pmf(0) * d.whole + aimedConePdf(aims_[index], position, direction, d.whole, 0);
+    d.whole = all.pdf(direction);
+    d.mixture = aim.parts.pmf(0) * d.whole +
+                aimedConePdf(aim, position, direction, all, primaryPoint(uPosition, Vec2(0)), {0, 1});
     return d;
 }
 
@@ -247,7 +285,7 @@ EmissionSampler::Densities EmissionSampler::discDensities(size_t index, Vec3 pos
     const Vec2 offset = discOffset(light.scene, position, Frame(light.direction));
     Densities d;
     d.whole = glm::dot(offset, offset) <= square(light.scene.radius) ? 1 / (kPi * square(light.scene.radius)) : 0;
-    d.mixture = aims_[index].parts.pmf(0) * d.whole + aimedDiscPdf(aims_[index], light, position, 0);
+    d.mixture = aims_[index].parts.pmf(0) * d.whole + aimedDiscPdf(aims_[index], light, position, {0, 1});
     return d;
 }
 

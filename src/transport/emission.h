@@ -2,12 +2,15 @@
 //
 // Each light samples a mixture of its whole emission and of parts aimed at spheres, the casters' bounds and larger ones
 // around all casters: cones for point, spot and area lights, discs for directional ones (Jensen 1996, projection maps;
-// as a defensive mixture after Hesterberg 1995). Every path's weight is whole density / mixture density.
+// as a defensive mixture after Hesterberg 1995). Where within a part paths are worth most can be learnt from trials.
+// Every path's weight is whole density / mixture density.
 #pragma once
 
 #include <vector>
 
+#include "sampling/primary_density.h"
 #include "sampling/sampler.h"
+#include "transport/direction_map.h"
 #include "transport/walk.h"
 
 namespace lsde {
@@ -28,12 +31,24 @@ struct LightPathStart {
     Rgb power{0};  // W of this path: the light's emission over the density of all choices
     size_t light = 0;
     float aimWeight = 1;  // whole / mixture density
+    size_t part = 0;      // of the mixture; 0: the whole emission
+    PrimaryPoint u{};     // as used: position (where it is chosen), then direction
+};
+
+// A path that was tried, to learn from.
+struct AimTrial {
+    size_t light = 0, part = 0;
+    PrimaryDensity::Trial trial;
 };
 
 class EmissionSampler {
   public:
     // selected[i]: light i takes part. Throws Error if none does.
     EmissionSampler(const Scene& scene, const std::vector<bool>& selected, AimShares shares);
+
+    // Aims within each part at what its trials say. They were drawn by this sampler before it had learnt anything, all
+    // of them, in any order that is always the same.
+    void learn(std::span<const AimTrial> trials);
 
     // Takes the sampler's first dimensions: position 0-1, direction 2-3 (0-1 where a light has no choice of position),
     // choice of light and part 4, side 5. False: this start carries no light (below an emitter's horizon, outside a
@@ -44,33 +59,46 @@ class EmissionSampler {
     // W: largest component of an unaimed path's power, on average over the lights.
     float fairPower() const { return fairPower_; }
     // Density of a direction (1/sr; directional: of a point on the disc's plane, 1/m2) from `position` on light i by
-    // the whole emission and by the mixture; for tests.
+    // the whole emission and by the mixture; for tests. uPosition: the numbers that chose the position.
     struct Densities {
         float whole = 0, mixture = 0;
     };
-    Densities directionDensities(size_t light, Vec3 position, Vec3 normal, Vec3 direction) const;
+    Densities directionDensities(size_t light, Vec3 position, Vec3 normal, Vec3 direction,
+                                 Vec2 uPosition = Vec2(0)) const;
     Densities discDensities(size_t light, Vec3 position) const;
 
   private:
     // Part 0 is the whole emission, part 1 + i is aimed at target i.
     struct Aim {
         DiscreteDistribution parts;
-        MediaStack media;             // point and spot lights: the solids around them
+        std::vector<PrimaryDensity> learnt;  // of each part's numbers; empty: even
+        bool positioned = false;             // the first two of them choose a position
+        MediaStack media;                    // point and spot lights: the solids around them
         bool mayStartInside = false;  // area lights: paths may start within a solid, its media are looked up for each
     };
 
     void findTargets();
     DiscreteDistribution partsOf(const Light& light) const;
     Aim aimOf(const Light& light, const std::vector<Bounds>& solids) const;
-    bool sampleArea(const AreaLight& light, const Aim& aim, size_t part, Sampler& sampler, LightPathStart& start) const;
-    bool samplePoint(const PointLight& light, const Aim& aim, size_t part, Sampler& sampler,
-                     LightPathStart& start) const;
-    void sampleDirectional(const DirectionalLight& light, const Aim& aim, size_t part, Sampler& sampler,
+    // What was drawn, and what is known of its density.
+    struct Draw {
+        size_t part;
+        float learnt;  // density of its part's numbers; even: 1
+    };
+    // Maps even numbers to those of a part.
+    static Draw draw(const Aim& aim, size_t part, PrimaryPoint& u);
+    // Of a part's numbers; those of the drawn part are not asked for again.
+    static float learntDensity(const Aim& aim, size_t part, const PrimaryPoint& u, Draw drawn);
+    bool sampleArea(const AreaLight& light, const Aim& aim, Sampler& sampler, LightPathStart& start) const;
+    bool samplePoint(const PointLight& light, const Aim& aim, Sampler& sampler, LightPathStart& start) const;
+    void sampleDirectional(const DirectionalLight& light, const Aim& aim, Sampler& sampler,
                            LightPathStart& start) const;
     // Sum over the aimed parts of choice probability times density. The part that drew the direction counts even if
-    // rounding put it just beyond the cone's edge: it would weigh as what is hardly ever drawn.
-    float aimedConePdf(const Aim& aim, Vec3 position, Vec3 direction, float wholePdf, size_t drawn) const;
-    float aimedDiscPdf(const Aim& aim, const DirectionalLight& light, Vec3 position, size_t drawn) const;
+    // rounding put it just beyond the cone's edge: it would weigh as what is hardly ever drawn. `all`: the whole
+    // emission, which is what a part inside its target aims at.
+    float aimedConePdf(const Aim& aim, Vec3 position, Vec3 direction, const DirectionMap& all, const PrimaryPoint& u,
+                       Draw drawn) const;
+    float aimedDiscPdf(const Aim& aim, const DirectionalLight& light, Vec3 position, Draw drawn) const;
 
     const Scene& scene_;
     DiscreteDistribution choice_;

@@ -161,3 +161,26 @@ TEST_CASE("visible normals are unit vectors of the upper side, at grazing angles
                 CHECK(glm::length(h) == doctest::Approx(1).epsilon(1e-5));
             }
 }
+
+TEST_CASE("points of the square are found again from where they are mapped to") {
+    test::Random random(11);
+    const auto near = [](Vec2 a, Vec2 b, float tolerance) {
+        // The turn about an axis has no beginning.
+        const float turn = std::fabs(a.y - b.y);
+        return std::fabs(a.x - b.x) < tolerance && std::min(turn, 1 - turn) < tolerance;
+    };
+    for (int i = 0; i < 10'000; ++i) {
+        const Vec2 u = 0.0005F + 0.999F * random.uniform2D();
+        CAPTURE(u.x);
+        CAPTURE(u.y);
+        CHECK(near(diskToSquare(squareToDisk(u)), u, 1e-5F));
+        CHECK(near(cosineHemisphereToSquare(squareToCosineHemisphere(u)), u, 1e-5F));
+        for (const float oneMinusCos : {2.0F, 0.3F, 1e-4F})
+            CHECK(near(coneToSquare(squareToCone(u, oneMinusCos), oneMinusCos), u, 3e-3F));
+    }
+    for (const Vec2 u : kExtremes) {
+        const Vec2 back = diskToSquare(squareToDisk(u));
+        CHECK(near(back, u, 1e-5F));
+        CHECK(std::max(back.x, back.y) < 1);
+    }
+}

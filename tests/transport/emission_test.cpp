@@ -75,15 +75,29 @@ Drawn draw(const EmissionSampler& sources, uint64_t index, uint64_t seed = 1) {
 // Each from a sequence of its own: chi-squared tests expect independent samples.
 Drawn drawIndependently(const EmissionSampler& sources, uint64_t i) { return draw(sources, 0, i); }
 
-constexpr int kTests = 20;  // chi-squared tests in this file
+constexpr int kTests = 30;  // chi-squared tests in this file
 
-void checkDirections(Kind kind, bool contained) {
+// What it learns here has no sense, so that nothing but its use is tested: that paths to one side are worth much.
+EmissionSampler learntSampler(const Scene& scene, AimShares shares = kAimedAtCasters) {
+    EmissionSampler sources(scene, test::allLights(scene), shares);
+    std::vector<AimTrial> trials;
+    for (uint64_t i = 0; i < 50'000; ++i) {
+        const LightPathStart start = draw(sources, i, 99).start;
+        const Vec3 to = start.ray.origin + start.ray.direction;
+        trials.push_back({start.light, start.part, {start.u, to.x > 0.1F && to.z > -0.3F ? 5.0F : 1.0F}});
+    }
+    sources.learn(trials);
+    return sources;
+}
+
+void checkDirections(Kind kind, bool contained, bool learnt = false) {
     SceneBuilder builder;
     addCasters(builder);
     if (contained) addContainingCaster(builder);
     addLight(builder, kind);
     const auto scene = builder.build();
-    const EmissionSampler sources(*scene, test::allLights(*scene), kAimedAtCasters);
+    const EmissionSampler sources =
+        learnt ? learntSampler(*scene) : EmissionSampler(*scene, test::allLights(*scene), kAimedAtCasters);
     uint64_t i = 0;
     const auto result = test::chiSquaredOnSphere(
         {24, 24, 12, 100'000},
@@ -112,19 +126,31 @@ TEST_CASE("directions from a light have the density of its mixture") {
         }
 }
 
-TEST_CASE("rays of a directional light have the density of its mixture of discs") {
+TEST_CASE("also where it has learnt which are worth more") {
+    for (const Kind kind : {Kind::Point, Kind::Spot})
+        for (const bool contained : {false, true}) {
+            CAPTURE(static_cast<int>(kind));
+            CAPTURE(contained);
+            checkDirections(kind, contained, true);
+        }
+}
+
+namespace {
+
+void checkDiscs(bool learnt) {
     SceneBuilder builder;
     addCasters(builder);
     builder.add(test::plate({0, 0, 0}, 3), test::lambert(Rgb(0.5F)));
     addLight(builder, Kind::Sun);
     const auto scene = builder.build();
-    const EmissionSampler sources(*scene, test::allLights(*scene), kAimedAtCasters);
+    const EmissionSampler sources =
+        learnt ? learntSampler(*scene) : EmissionSampler(*scene, test::allLights(*scene), kAimedAtCasters);
     const Sphere whole = scene->boundingSphere();
     const Frame frame(glm::normalize(Vec3(0.3F, -1, 0.2F)));
     const double side = 2 * whole.radius;
     uint64_t i = 0;
     const auto result = test::chiSquaredOnSquare(
-        {24, 24, 12, 100'000},
+        {24, 24, learnt ? 50 : 12, 100'000},
         [&]() -> std::optional<Vec2> {
             const Drawn d = drawIndependently(sources, i++);
             if (!d.emits) return std::nullopt;
@@ -139,6 +165,12 @@ TEST_CASE("rays of a directional light have the density of its mixture of discs"
         });
     CHECK(result.accepted(kTests));
 }
+
+}  // namespace
+
+TEST_CASE("rays of a directional light have the density of its mixture of discs") { checkDiscs(false); }
+
+TEST_CASE("also where it has learnt where they are worth more") { checkDiscs(true); }
 
 TEST_CASE("no path weighs more than the whole emission's share allows") {
     for (const Kind kind : kKinds)
@@ -250,7 +282,7 @@ TEST_CASE("the total power is that of Lambert, of all directions, of the spot's 
     CHECK(lamp.build()->lights()[0].power().x == doctest::Approx(3 * kPi * 0.64F));
 }
 
-TEST_CASE("aiming changes no flux: on a caster, beside it, and by direction") {
+TEST_CASE("aiming, learnt or not, changes no flux: on a caster, beside it, and by direction") {
     const Mesh lamp = test::plate(kLight, 0.4F, false);
     for (const Kind kind : {Kind::Point, Kind::Spot, Kind::AreaDown, Kind::AreaBothSides, Kind::Sun}) {
         CAPTURE(static_cast<int>(kind));
@@ -260,16 +292,19 @@ TEST_CASE("aiming changes no flux: on a caster, beside it, and by direction") {
         const auto scene = builder.build();
         // Flux through discs on the floor: under the casters, half under one, and beside.
         const std::array<Vec3, 3> targets = {Vec3(0, 0, 0), Vec3(-1.3F, 0, 0.6F), Vec3(0.2F, 0, -1.6F)};
-        std::array<std::array<test::Mean, 3>, 2> flux;
-        for (const bool aim : {false, true}) {
-            const EmissionSampler sources(*scene, test::allLights(*scene), aim ? kAimedAtCasters : kNotAimed);
+        std::array<std::array<test::Mean, 3>, 3> flux;
+        const std::array<EmissionSampler, 3> samplers = {
+            EmissionSampler(*scene, test::allLights(*scene), kNotAimed),
+            EmissionSampler(*scene, test::allLights(*scene), kAimedAtCasters), learntSampler(*scene)};
+        for (size_t way = 0; way < samplers.size(); ++way) {
+            const EmissionSampler& sources = samplers[way];
             for (uint64_t i = 0; i < 100'000; ++i) {
                 const Drawn d = draw(sources, i);
                 const Ray& r = d.start.ray;
                 const Vec3 onFloor = r.at(-r.origin.y / r.direction.y);
                 for (size_t t = 0; t < targets.size(); ++t) {
                     const bool hit = d.emits && r.direction.y < 0 && glm::length(onFloor - targets[t]) < 0.4F;
-                    flux[aim ? 1 : 0][t].add(hit ? d.start.power.y : 0);
+                    flux[way][t].add(hit ? d.start.power.y : 0);
                 }
             }
         }
@@ -277,6 +312,7 @@ TEST_CASE("aiming changes no flux: on a caster, beside it, and by direction") {
             CAPTURE(t);
             CHECK(flux[0][t].value() > 0);
             CHECK(test::agree(flux[0][t], flux[1][t]));
+            CHECK(test::agree(flux[0][t], flux[2][t]));
         }
         // What aiming is for: under the casters, less noise.
         CHECK(flux[1][0].standardError() < flux[0][0].standardError());

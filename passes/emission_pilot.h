@@ -1,0 +1,22 @@
+// What is found out before photons are emitted, by light paths whose photons are discarded.
+//
+// All of it is a function of scene, settings and seed: every shard of an emission finds the same.
+#pragma once
+
+#include "passes/light_tracer.h"
+
+namespace lsde {
+
+// Where within the parts that it aims at a light's paths are worth most: a path's worth is the power of the photons
+// that it leaves, each over the root of the irradiance where it lands. Where light is concentrated there are photons
+// enough; that they thin out there gives the dim surroundings more.
+std::vector<AimTrial> tryAims(LightTracerInput input, ThreadPool& pool);
+
+struct PilotFindings {
+    float fairPower = 0;     // W: light that met a D then takes as many rays as its share is
+    float diffuseBoost = 0;  // of directions towards casters from diffuse surfaces: more where those of the lobe escape
+};
+PilotFindings pilotEmission(LightTracerInput input, ThreadPool& pool);
+inline constexpr float kPilotDiffuseBoost = 4;
+
+}  // namespace lsde
