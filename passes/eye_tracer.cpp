@@ -1,5 +1,7 @@
 #include "passes/eye_tracer.h"
 
+#include <algorithm>
+#include <cmath>
 #include <mutex>
 
 #include "sampling/mis.h"
@@ -79,7 +81,8 @@ void EyeTracer::render(Film& film, std::vector<SampleStatistics>& statistics, co
                 const uint64_t end = plan.count(pixel, span.end);
                 for (uint64_t i = plan.count(pixel, span.begin); i < end; ++i) {
                     samplePixel(camera_.filmX() + x, camera_.filmY() + y, span.first + i, scratch);
-                    statistics[pixel].add(i, luminance(scratch.sums.layer[0]));
+                    statistics[pixel].add(i, scratch.sums.layer[0], std::sqrt(scratch.sums.photonVariance));
+                    scratch.sums.photonVariance = 0;
                     scratch.sums.addTo(film, x, y);
                 }
             }
@@ -216,6 +219,7 @@ void EyeTracer::addPhotons(const Vertex& v, const EyePath& path, EyeScratch& scr
         ++scratch.counters.gathers;
         scratch.counters.gathered += light.photons;
         // The full picture gets the sum over all photons, which does not depend on how layers group them.
+        const Rgb before = scratch.sums.layer[0];
         if (!layers_.hasOnly()) scratch.sums.addFull(path.state.throughput * light.total);
         for (const GatheredPaths& g : light.paths) {
             const Rgb fromDiffuse = path.state.throughput * g.diffuse, fromGlossy = path.state.throughput * g.glossy;
@@ -228,6 +232,10 @@ void EyeTracer::addPhotons(const Vertex& v, const EyePath& path, EyeScratch& scr
             if (!isBlack(fromDiffuse)) scratch.sums.contributeToLayers(layers_, fromDiffuse, *state, diffuseMask);
             if (!isBlack(fromGlossy)) scratch.sums.contributeToLayers(layers_, fromGlossy, *state, glossyMask);
         }
+        // Of --only's paths as much of it as they have of the light.
+        const float of = luminance(path.state.throughput * light.total);
+        const float share = of > 0 ? std::clamp(luminance(scratch.sums.layer[0] - before) / of, 0.0F, 1.0F) : 0;
+        scratch.sums.photonVariance += share * mean(square(path.state.throughput) * light.variance);
     };
     if (layers_.causticCounts(diffuseMask) || layers_.causticCounts(glossyMask))
         add(photons_->caustic(), photons_->caustic().gather(query, v.bsdf, v.frame, v.wo, scratch.gather));

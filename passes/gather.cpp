@@ -147,8 +147,15 @@ DensityQuery ClassGather::densityQuery(const PhotonGatherQuery& query, GatherScr
     return density;
 }
 
+float ClassGather::sharedVariance(const PhotonGatherQuery& query, Vec3 wo, float radius) {
+    // The integral of Epanechnikov's kernel squared is that of an even one of 3/4 the area.
+    const float kernel = 0.75F * kPi * square(radius);
+    const float pixel = square(query.point.footprint) / std::max(0.01F, std::fabs(wo.z));
+    return kernel / (kernel + pixel);
+}
+
 // Whether the light was found in the cache; else `density` gets the bandwidth as its least radius.
-bool ClassGather::known(const PhotonGatherQuery& query, DensityQuery& density, const Bsdf& bsdf,
+bool ClassGather::known(const PhotonGatherQuery& query, DensityQuery& density, const Bsdf& bsdf, Vec3 wo,
                         GatherScratch& scratch) const {
     if (cache_ == nullptr) return false;
     const auto* diffuse = std::get_if<DiffuseBsdf>(&bsdf);
@@ -160,6 +167,7 @@ bool ClassGather::known(const PhotonGatherQuery& query, DensityQuery& density, c
             if (!isBlack(light.irradiance[g]))
                 scratch.light.paths.push_back({static_cast<uint16_t>(g), albedo * light.irradiance[g]});
         scratch.light.total = albedo * light.irradiance[groups_.size()];
+        scratch.light.variance = albedo * albedo * light.variance * sharedVariance(query, wo, light.radius);
         return true;
     }
     density.minRadius = std::max(density.minRadius, light.bandwidth.radius);
@@ -170,11 +178,11 @@ const GatheredLight& ClassGather::gather(const PhotonGatherQuery& query, const B
                                          GatherScratch& scratch) const {
     GatheredLight& out = scratch.light;
     out.paths.clear();
-    out.total = Rgb(0);
+    out.total = out.variance = Rgb(0);
     out.photons = 0;
     if (empty() || glm::dot(query.sideNormal, frame.toWorld(wo)) <= 0) return out;
     DensityQuery density = densityQuery(query, scratch);
-    if (known(query, density, bsdf, scratch)) return out;
+    if (known(query, density, bsdf, wo, scratch)) return out;
     const SurfaceAround& surface = scratch.surface;
     extent_.around(query.point.position, query.point.ng, std::max(density.minRadius, density.maxRadius),
                    scratch.surface);
@@ -182,6 +190,7 @@ const GatheredLight& ClassGather::gather(const PhotonGatherQuery& query, const B
     const auto* diffuse = std::get_if<DiffuseBsdf>(&bsdf);
     const bool flat = diffuse != nullptr && glm::dot(query.point.ng, query.point.ns) > kFlat;
     GatheredPaths total;
+    Rgb squares(0);
     const auto take = [&](uint32_t i, float kernel) {
         const PhotonPayload& p = tree_.payload[i];
         const uint16_t group = groups_.of(i);
@@ -200,6 +209,7 @@ const GatheredLight& ClassGather::gather(const PhotonGatherQuery& query, const B
         at->glossy += light.glossy;
         total.diffuse += light.diffuse;
         total.glossy += light.glossy;
+        squares += square(light.diffuse + light.glossy);
     };
     const GatheredDisc disc =
         std::visit([&](const auto& index) { return gatherPhotons(index, density, scratch.density, take); }, index_);
@@ -210,6 +220,7 @@ const GatheredLight& ClassGather::gather(const PhotonGatherQuery& query, const B
         g.glossy *= perPath;
     }
     out.total = total.diffuse * scale + total.glossy * perPath;
+    out.variance = squares * square(scale) * sharedVariance(query, wo, disc.radius);
     return out;
 }
 

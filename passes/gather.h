@@ -30,7 +30,8 @@ struct GatheredPaths {
 };
 struct GatheredLight {
     std::vector<GatheredPaths> paths;
-    Rgb total{0};  // of all
+    Rgb total{0};     // of all
+    Rgb variance{0};  // of the total's mean over the pixel, as the number of photons makes it
     uint32_t photons = 0;
 };
 
@@ -92,8 +93,12 @@ class ClassGather {
                                 GatherScratch& scratch) const;
 
   private:
+    // What a pixel's samples, spread over its footprint, have of the variance of one of them, with a kernel of a radius
+    // (m): about the share of the kernel's area in both together.
+    static float sharedVariance(const PhotonGatherQuery& query, Vec3 wo, float radius);
     DensityQuery densityQuery(const PhotonGatherQuery& query, GatherScratch& scratch) const;
-    bool known(const PhotonGatherQuery& query, DensityQuery& density, const Bsdf& bsdf, GatherScratch& scratch) const;
+    bool known(const PhotonGatherQuery& query, DensityQuery& density, const Bsdf& bsdf, Vec3 wo,
+               GatherScratch& scratch) const;
 
     PhotonTreeView tree_;
     AnyIndex index_;

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "base/run.h"
 #include "passes/gather.h"
 #include "passes/layers.h"
+#include "passes/picture_error.h"
 #include "scene/scene.h"
 #include "transport/direct_light.h"
 
@@ -33,6 +35,8 @@ class Integrator {
     // The mean of `samples` samples.
     virtual RgbImage develop(int layer, uint64_t samples) const = 0;
     virtual uint64_t notFinite() const = 0;
+    // Of that mean; none from methods that do not know.
+    virtual std::optional<PictureError> error(uint64_t /*samples*/) const { return std::nullopt; }
 };
 
 struct IntegratorEntry {
@@ -41,6 +45,7 @@ struct IntegratorEntry {
     std::string coverage;  // Heckbert expression of the paths that it makes (under lights with area and under delta
                            // lights alike)
     bool usesPhotons = false;
+    bool knowsError = false;  // Integrator::error has a value
     std::function<std::unique_ptr<Integrator>(const IntegratorInput&)> make;
     // Paths of this scene that the method cannot make, as a line to warn with; empty: none.
     std::function<std::string(const Scene&)> cannotMake;

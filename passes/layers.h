@@ -64,6 +64,7 @@ class RenderLayers {
 // One sample's light by film layer.
 struct SampleSums {
     std::array<Rgb, RenderLayers::kMaxFilmLayers> layer{};
+    float photonVariance = 0;  // of the full picture's, by the photons gathered; mean over the channels
     uint64_t notFinite = 0;
 
     void contribute(const RenderLayers& layers, Rgb value, const LightPathState& light, const EyePathState& eye);

@@ -220,7 +220,7 @@ struct RenderOptions {
     RenderSettings settings;
     bool noCache = false;
     uint64_t photons = 0, spp = 0;
-    double wall = 0, cpu = 0;
+    double wall = 0, cpu = 0, error = 0;
     std::string integrator = "photon", size, crop, index = "kd", indirect = "photons", only, lights;
     std::vector<std::string> paths;
 };
@@ -250,6 +250,7 @@ void settle(RenderOptions& o, const CLI::App& app) {
     if (app.count("--spp") > 0) s.spp = o.spp;
     if (app.count("--time") > 0) s.wallLimit = o.wall;
     if (app.count("--cpu-time") > 0) s.cpuLimit = o.cpu;
+    if (app.count("--error") > 0) s.errorLimit = o.error;
     if (!o.size.empty()) {
         const auto v = parseInts("--size", o.size, 'x', 2, "WxH, each from 1 to 65536");
         if (v[0] == 0 || v[1] == 0)
@@ -303,6 +304,10 @@ Json pictureFigures(const fs::path& file, const RenderResult& r) {
     Json j;
     j["samplesPerPixel"] = r.samples;
     j["notFinite"] = r.notFinite;
+    if (r.relativeError)
+        j["estimatedRelMse"] = {{"total", r.relativeError->total()},
+                                {"camera", r.relativeError->camera},
+                                {"photons", r.relativeError->photons}};
     j["bytes"] = fs::file_size(file);
     return j;
 }
@@ -366,6 +371,11 @@ void addRender(CLI::App& app, RenderOptions& o) {
     app.add_option("--cpu-time", o.cpu, "CPU seconds of all threads for the whole run")
         ->check(CLI::PositiveNumber)
         ->type_name("SEC");
+    app.add_option("--error", o.error,
+                   "end when the estimated relMSE, the mean of error^2 / (value^2 + 0.01), is as low; photons and "
+                   "samples are chosen unless given")
+        ->check(CLI::PositiveNumber)
+        ->type_name("E");
     app.add_option("--size", o.size, "picture size in pixels (default: the camera's extras.resolution, else 1280 wide)")
         ->type_name("WxH");
     app.add_option("--crop", o.crop, "only these pixels of the picture")->type_name("X0,Y0,X1,Y1");

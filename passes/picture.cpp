@@ -41,6 +41,25 @@ void PictureMean::add(const std::vector<RgbImage>& layers, double weight) {
             sums_[i].pixels[p] += (layers[i].pixels[p] - sums_[i].pixels[p]) * share;
 }
 
+void PictureMean::addError(const PictureError& error, double weight) {
+    errorWeight_ += weight;
+    const auto factor = static_cast<float>(square(weight));
+    const auto add = [factor](std::vector<float>& sums, const std::vector<float>& variances) {
+        sums.resize(variances.size());
+        for (size_t i = 0; i < variances.size(); ++i) sums[i] += factor * variances[i];
+    };
+    add(errorSums_.camera, error.camera);
+    add(errorSums_.photons, error.photons);
+}
+
+PictureError PictureMean::error() const {
+    PictureError mean = errorSums_;
+    const auto factor = static_cast<float>(1 / square(errorWeight_));
+    for (auto* variances : {&mean.camera, &mean.photons})
+        for (float& v : *variances) v *= factor;
+    return mean;
+}
+
 ImageFile PictureMean::file(const std::vector<std::string>& names) const {
     ImageFile file;
     file.width = sums_[0].width;
@@ -48,6 +67,7 @@ ImageFile PictureMean::file(const std::vector<std::string>& names) const {
     for (size_t i = 0; i < names.size(); ++i)
         if (names[i] != kOnlyLayer && !(names[i] == "unclassified" && isBlackEverywhere(sums_[i])))
             putLayer(file, names[i], sums_[i]);
+    if (hasError()) file.channels["error.R"] = error().standardErrors();
     return file;
 }
 

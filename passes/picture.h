@@ -7,6 +7,7 @@
 #include "image/exr.h"
 #include "image/image.h"
 #include "passes/layers.h"
+#include "passes/picture_error.h"
 #include "scene/scene.h"
 
 namespace lsde {
@@ -16,13 +17,19 @@ class PictureMean {
   public:
     // layers[i]: the picture of film layer i.
     void add(const std::vector<RgbImage>& layers, double weight);
-    // Channels by name, as in the file; the layer unclassified only where it holds anything.
+    // Of the same pictures, which are independent of each other: once for each, or never.
+    void addError(const PictureError& error, double weight);
+    bool hasError() const { return errorWeight_ > 0; }
+    PictureError error() const;  // of the mean
+    // Channels by name, as in the file: error.R where it is known, the layer unclassified only where it holds anything.
     ImageFile file(const std::vector<std::string>& names) const;
     const RgbImage& full() const { return sums_[0]; }
 
   private:
     std::vector<RgbImage> sums_;
     double weight_ = 0;
+    PictureError errorSums_;  // of weight^2 times variance
+    double errorWeight_ = 0;
 };
 
 struct PictureFacts {

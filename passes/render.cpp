@@ -26,8 +26,29 @@ struct SampleLimits {
     uint64_t begin = 0;             // number of the first sample
     std::optional<uint64_t> count;  // samples a pixel
     std::optional<Clock> clock;
-    double reserve = 0;  // s, kept for what comes after
+    double reserve = 0;           // s, kept for what comes after
+    std::optional<double> error;  // of the estimated relMSE
 };
+
+// Of the picture as far as it has come.
+std::optional<PictureError::Relative> relativeError(const Integrator& integrator, uint64_t samples) {
+    const auto error = integrator.error(samples);
+    return error ? std::optional(error->relativeTo(integrator.develop(0, samples))) : std::nullopt;
+}
+
+// Samples after `done` that an error of the camera's part would take to come down to what the photons leave of the
+// limit; 0: it is there, or the photons alone exceed it and samples cannot help.
+uint64_t samplesForError(const Integrator& integrator, uint64_t done, double limit) {
+    constexpr uint64_t kLeast = SamplePlan::kUniform + 2;  // fewer say too little of the noise
+    constexpr double kSmallPart = 0.1;
+    if (done < kLeast) return kLeast - done;
+    const PictureError::Relative error = relativeError(integrator, done).value();
+    if (error.total() <= limit) return 0;
+    const double left = std::max(limit - error.photons, kSmallPart * error.photons);
+    if (error.camera <= left) return 0;
+    const double more = static_cast<double>(done) * (error.camera / left - 1);
+    return static_cast<uint64_t>(std::clamp(more, 1.0, static_cast<double>(done)));
+}
 
 // Samples until the count or the time is reached; returns how many. At least one is taken.
 uint64_t takeSamples(Integrator& integrator, const SampleLimits& limits, RunContext& run, bool& interrupted) {
@@ -41,11 +62,16 @@ uint64_t takeSamples(Integrator& integrator, const SampleLimits& limits, RunCont
             interrupted = true;
             break;
         }
+        if (limits.error) {
+            const uint64_t more = samplesForError(integrator, done, *limits.error);
+            if (more == 0) break;
+            step = limits.clock ? std::min(step, more) : more;
+        }
         if (limits.count) step = std::min(step, *limits.count - done);
         integrator.render(limits.begin + done, limits.begin + done + step, run);
         done += step;
         if (!limits.clock) {
-            run.progress("camera", static_cast<double>(done) / static_cast<double>(limits.count.value_or(done)));
+            run.progress("camera", static_cast<double>(done) / static_cast<double>(limits.count.value_or(2 * done)));
             step = std::min<uint64_t>(2 * step, 16);
             continue;
         }
@@ -100,12 +126,16 @@ class Render {
         if (settings.progressive > 0 && cameras_.size() > 1)
             throw UsageError(
                 "--progressive: emits maps for a picture of its own, cannot be combined with --camera all");
+        if (settings.errorLimit && settings.progressive > 0)
+            throw UsageError("--error: says when one picture is done, cannot be combined with --progressive");
+        if (settings.errorLimit && !method.knowsError)
+            throw UsageError(fmt::format("--error: the method {} does not know its error", method.name));
         if (const std::string missing = method_.cannotMake(scene); !missing.empty()) run.warn(missing);
     }
 
     void pictures(const OnPicture& onPicture) {
         samples_ = settings_.spp;
-        if (!clock_.limited() && !samples_) samples_ = kDefaultSamples;
+        if (!clock_.limited() && !settings_.errorLimit && !samples_) samples_ = kDefaultSamples;
         if (settings_.progressive > 0 && method_.usesPhotons) {
             progressivePasses();
             onPicture(0, finished());
@@ -116,7 +146,7 @@ class Render {
             mean_ = {};
             result_.samples = 0;
             result_.notFinite = 0;
-            SampleLimits limits{0, samples_, {}, reserve()};
+            SampleLimits limits{0, samples_, {}, reserve(), settings_.errorLimit};
             if (clock_.limited())
                 limits.clock = clock_.slice(clock_.left() / static_cast<double>(cameras_.size() - frame_));
             see(gather_ ? &*gather_ : nullptr, limits, 1);
@@ -131,6 +161,7 @@ class Render {
         RenderResult r = result_;
         r.image = mean_.file(layers_.filmLayers());
         r.picture = mean_.full();
+        if (mean_.hasError()) r.relativeError = mean_.error().relativeTo(r.picture);
         r.metadata = describePicture(scene_, camera(), layers_,
                                      {method_.name, settings_.only.value_or(""), run_.seed, r.photons, r.samples});
         if (r.notFinite > 0) run_.warn(fmt::format("{} contributions were not finite and were left out", r.notFinite));
@@ -211,6 +242,7 @@ class Render {
         const int count = static_cast<int>(layers_.filmLayers().size());
         for (int i = 0; i < count; ++i) pictures.push_back(integrator->develop(i, done));
         mean_.add(pictures, weight);
+        if (const auto error = integrator->error(done)) mean_.addError(*error, weight);
         result_.samples += done;
         result_.notFinite += integrator->notFinite();
         return done;
@@ -219,11 +251,18 @@ class Render {
     // What all pictures share.
     void preparePhotons() {
         if (!method_.usesPhotons || !(layers_.wantsCaustic() || indirectFromMap())) return;
-        map_ = map();
+        if (settings_.errorLimit && settings_.map.empty() && !settings_.photons) {
+            emitForError(*settings_.errorLimit);
+        } else {
+            map_ = map();
+            gather_.emplace(gatherInput(map_), gatherSettings(), run_);
+        }
         note(map_);
         if (!noCaustics_.empty()) run_.warn(noCaustics_);
-        gather_.emplace(gatherInput(map_), gatherSettings(), run_);
     }
+
+    // As many photons as bring their part of the first picture's error down to a share of the limit.
+    void emitForError(double limit);
 
     void progressivePasses();
 
@@ -244,6 +283,29 @@ class Render {
     PictureMean mean_;
     RenderResult result_;
 };
+
+void Render::emitForError(double limit) {
+    constexpr double kShare = 0.5;        // of the limit that photons may take
+    constexpr double kAim = 0.4;          // and that the next number is reckoned by
+    constexpr double kExponent = 1.3;     // their error falls slower than by their number
+    constexpr double kMostPhotons = 2e8;  // paths: 8 GB of photons
+    constexpr double kLeastGrowth = 2, kMostGrowth = 8;
+    EmitSettings emit = emitSettings();
+    for (;;) {
+        const double start = clock_.used();
+        map_ = emitPhotons(scene_, emit, run_);
+        gather_.emplace(gatherInput(map_), gatherSettings(), run_);
+        const auto pilot = method_.make({scene_, camera(), layers_, selected_, &*gather_, run_.seed});
+        takeSamples(*pilot, {0, SamplePlan::kUniform, {}, 0, {}}, run_, result_.interrupted);
+        const double photons = relativeError(*pilot, SamplePlan::kUniform)->photons;
+        const auto paths = static_cast<double>(emit.photons);
+        if (photons <= kShare * limit || paths >= kMostPhotons || result_.interrupted) return;
+        const double growth = std::clamp(std::pow(photons / (kAim * limit), kExponent), kLeastGrowth, kMostGrowth);
+        // Half of what time there is, at most: the rest is for the picture.
+        if (clock_.limited() && growth * (clock_.used() - start) > 0.5 * clock_.left()) return;
+        emit.photons = static_cast<uint64_t>(std::min(growth * paths, kMostPhotons));
+    }
+}
 
 // Each pass has photons of its own and a radius that shrinks from the pilot's (the first pass's map); the pictures are
 // averaged. Under a time limit the first pass finds out what a pass may cost, and all others have its counts, so that

@@ -22,13 +22,14 @@
 namespace lsde {
 
 struct RenderSettings {
-    std::filesystem::path map;        // empty: emitted here, or found in the cache
-    bool cache = true;                // look for the map in the user's cache folder, keep it there
-    bool otherScene = false;          // take a map of another scene
-    std::optional<uint64_t> photons;  // default 1,000,000 without a time limit
-    std::optional<uint64_t> spp;      // default 64 without a time limit
-    std::optional<double> wallLimit;  // s, of the whole run, process start included
-    std::optional<double> cpuLimit;   // s, all threads
+    std::filesystem::path map;         // empty: emitted here, or found in the cache
+    bool cache = true;                 // look for the map in the user's cache folder, keep it there
+    bool otherScene = false;           // take a map of another scene
+    std::optional<uint64_t> photons;   // default 1,000,000 without a time limit
+    std::optional<uint64_t> spp;       // default 64 without a time limit
+    std::optional<double> wallLimit;   // s, of the whole run, process start included
+    std::optional<double> cpuLimit;    // s, all threads
+    std::optional<double> errorLimit;  // of the estimated relMSE (PictureError::relativeTo)
     std::optional<std::array<int, 2>> size;
     std::optional<Crop> crop;
     std::string camera;
@@ -43,11 +44,12 @@ struct RenderSettings {
 struct RenderResult {
     ImageFile image;
     ExrMetadata metadata;
-    RgbImage picture;            // the full one
-    uint64_t samples = 0;        // per pixel, reached
-    uint32_t passes = 0;         // progressive ones, reached
-    uint64_t photons = 0;        // paths emitted for it, or those of the map
-    uint64_t storedPhotons = 0;  // of the caustic class
+    RgbImage picture;                                     // the full one
+    uint64_t samples = 0;                                 // per pixel, reached
+    std::optional<PictureError::Relative> relativeError;  // estimated, where the method can
+    uint32_t passes = 0;                                  // progressive ones, reached
+    uint64_t photons = 0;                                 // paths emitted for it, or those of the map
+    uint64_t storedPhotons = 0;                           // of the caustic class
     uint64_t storedIndirect = 0;
     uint64_t notFinite = 0;  // contributions left out because they were not finite
     std::filesystem::path cachedMap;

@@ -1,6 +1,7 @@
 // How many samples each pixel gets: the same number at first, then more where the picture is noisier.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -8,16 +9,25 @@
 
 namespace lsde {
 
-// Luminance of a pixel's first samples, in two halves, each as evenly distributed as the whole: their difference shows
-// the noise that is left, where the spread of single samples does not.
+// What is known of a pixel's noise. Samples are seen in two halves, each as evenly distributed as the whole: their
+// difference shows the noise that is left, where the spread of single samples does not.
 struct SampleStatistics {
     // Few: what every pixel must have is lost to those that need more.
     static constexpr uint64_t kSamples = 2;
 
-    float sum[2] = {0, 0};
+    float sum[2] = {0, 0};  // luminance of the first samples
+    // Sums over all samples, over those before the last power of two, and before the one before.
+    Rgb all{0}, earlier{0}, earliest{0};
+    float photons = 0;  // sum of the standard deviations that single samples have by their photons
 
-    void add(uint64_t sample, float luminance) {
-        if (sample < kSamples) sum[sample / (kSamples / 2)] += luminance;
+    void add(uint64_t sample, Rgb value, float photonDeviation) {
+        if (sample < kSamples) sum[sample / (kSamples / 2)] += luminance(value);
+        if (std::has_single_bit(sample)) {
+            earliest = earlier;
+            earlier = all;
+        }
+        all += value;
+        photons += photonDeviation;
     }
 };
 

@@ -29,14 +29,18 @@ class EyeIntegrator : public Integrator {
         }
         if (begin < end) sample(begin, end, run);
     }
-    RgbImage develop(int layer, uint64_t samples) const override {
-        std::vector<double> counts(statistics_.size());
-        for (size_t i = 0; i < counts.size(); ++i) counts[i] = static_cast<double>(plan_.count(i, samples));
-        return film_.develop(layer, counts);
+    RgbImage develop(int layer, uint64_t samples) const override { return film_.develop(layer, counts(samples)); }
+    std::optional<PictureError> error(uint64_t samples) const override {
+        return pictureError(statistics_, counts(samples));
     }
     uint64_t notFinite() const override { return notFinite_; }
 
   private:
+    std::vector<double> counts(uint64_t samples) const {
+        std::vector<double> counts(statistics_.size());
+        for (size_t i = 0; i < counts.size(); ++i) counts[i] = static_cast<double>(plan_.count(i, samples));
+        return counts;
+    }
     void sample(uint64_t begin, uint64_t end, RunContext& run) {
         EyeCounters counters;
         tracer_.render(film_, statistics_, plan_, {*first_, begin - *first_, end - *first_}, run, counters);

@@ -36,11 +36,11 @@ std::string lightTracerMisses(const Scene& scene) {
 const std::vector<IntegratorEntry>& table() {
     static const std::vector<IntegratorEntry> kTable{
         {"photon", "multi-pass photon mapping: direct light, specular recursion, photon estimate of LS+D, continuation",
-         "L[DS]*E", true, [](const IntegratorInput& i) { return makeEyeIntegrator(i, true); }, nothing},
-        {"path", "unidirectional path tracing with multiple importance sampling", "L[DS]*E", false,
+         "L[DS]*E", true, true, [](const IntegratorInput& i) { return makeEyeIntegrator(i, true); }, nothing},
+        {"path", "unidirectional path tracing with multiple importance sampling", "L[DS]*E", false, true,
          [](const IntegratorInput& i) { return makeEyeIntegrator(i, false); }, pathTracerMisses},
         {"light", "light tracing: light paths connected to the camera at every non-specular surface", "L[DS]*DE", false,
-         makeLightIntegrator, lightTracerMisses},
+         false, makeLightIntegrator, lightTracerMisses},
     };
     return kTable;
 }

@@ -27,6 +27,7 @@ constexpr T square(T x) {
 
 inline float lengthSquared(Vec3 v) { return glm::dot(v, v); }
 inline float maxComponent(Vec3 v) { return std::max({v.x, v.y, v.z}); }
+inline float mean(Rgb c) { return (c.x + c.y + c.z) / 3; }
 inline bool isBlack(Rgb c) { return c.x == 0 && c.y == 0 && c.z == 0; }
 inline bool isFinite(Vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 inline float safeSqrt(float x) { return std::sqrt(std::max(0.0F, x)); }

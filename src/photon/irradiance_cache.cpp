@@ -58,27 +58,31 @@ IrradianceCache::IrradianceCache(const PhotonSource& source, const IrradianceRul
         level.states = std::vector<std::atomic<uint8_t>>(runs);
         level.bandwidths = std::make_unique_for_overwrite<Bandwidth[]>(runs);
         level.irradiance = std::make_unique_for_overwrite<Rgb[]>(runs * (source.groupCount + 1));
+        level.variances = std::make_unique_for_overwrite<Rgb[]>(runs);
     }
 }
 
-void IrradianceCache::make(uint32_t photon, const BandwidthRule& rule, Bandwidth& bandwidth, std::span<Rgb> irradiance,
+void IrradianceCache::make(Record& record, const BandwidthRule& rule, std::span<Rgb> irradiance,
                            BandwidthScratch& scratch) const {
-    bandwidth = consistentBandwidth(source_, photon, rule, scratch);
+    record.bandwidth = consistentBandwidth(source_, record.photon, rule, scratch);
     std::fill(irradiance.begin(), irradiance.end(), Rgb(0));
-    if (bandwidth.count < smoothCount_) return;
-    const float radiusSquared = square(bandwidth.radius);
+    record.variance = Rgb(0);
+    if (record.bandwidth.count < smoothCount_) return;
+    const float radiusSquared = square(record.bandwidth.radius);
     for (const DensityScratch::Candidate& c : scratch.density.accepted) {
         const uint16_t group = source_.groups[c.index];
         if (group >= source_.groupCount || !(c.entrySquared < radiusSquared)) continue;
         if (!scratch.surface.whole() && scratch.surface.hides(photons_.position(c.index))) continue;
-        const float weight = c.index == photon ? kOwnWeight : 1;
+        const float weight = c.index == record.photon ? kOwnWeight : 1;
         const Rgb e =
             unpackPower(photons_.payload[c.index].power) * (weight * epanechnikov(c.distanceSquared, radiusSquared));
         irradiance[group] += e;
         irradiance.back() += e;
+        record.variance += e * e;
     }
-    const auto scale = static_cast<float>(source_.perPath) / scratch.surface.share(bandwidth.radius);
+    const auto scale = static_cast<float>(source_.perPath) / scratch.surface.share(record.bandwidth.radius);
     for (Rgb& e : irradiance) e *= scale;
+    record.variance *= square(scale);
 }
 
 void IrradianceCache::recordOf(Level& level, size_t run, Record& record, std::vector<Rgb>& spare,
@@ -89,16 +93,19 @@ void IrradianceCache::recordOf(Level& level, size_t run, Record& record, std::ve
     uint8_t expected = kUnknown;
     const bool known = state.load(std::memory_order_acquire) == kKnown;
     if (!known && state.compare_exchange_strong(expected, kInTheMaking, std::memory_order_acquire)) {
-        make(record.photon, level.rule, level.bandwidths[run], kept, scratch);
+        make(record, level.rule, kept, scratch);
+        level.bandwidths[run] = record.bandwidth;
+        level.variances[run] = record.variance;
         state.store(kKnown, std::memory_order_release);
     } else if (!known && expected == kInTheMaking) {
         // Another thread is at it; waiting would cost as much as making it here.
         spare.resize(groups);
-        make(record.photon, level.rule, record.bandwidth, spare, scratch);
+        make(record, level.rule, spare, scratch);
         record.irradiance = spare;
         return;
     }
     record.bandwidth = level.bandwidths[run];
+    record.variance = level.variances[run];
     record.irradiance = kept;
 }
 
@@ -162,8 +169,11 @@ CachedLight IrradianceCache::at(const DensityQuery& query, bool wantIrradiance, 
     Record other;
     if (nearest(query, p + offset.x * frame.x + offset.y * frame.y, other, scratch) &&
         other.bandwidth.count >= smoothCount_ &&
-        glm::length(p - photons_.position(other.photon)) < 1.5F * kNear * other.bandwidth.radius)
+        glm::length(p - photons_.position(other.photon)) < 1.5F * kNear * other.bandwidth.radius) {
         light.irradiance = other.irradiance;
+        light.variance = other.variance;
+        light.radius = other.bandwidth.radius;
+    }
     return light;
 }
 

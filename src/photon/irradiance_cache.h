@@ -20,6 +20,9 @@ struct CachedLight {
     Bandwidth bandwidth;
     // W/m2 by group, and last their sum, which does not depend on the groups. Empty: not known here, gather.
     std::span<const Rgb> irradiance;
+    // (W/m2)^2, of their sum, as the photons' number makes it; and the radius (m) over which it is a mean.
+    Rgb variance{0};
+    float radius = 0;
 };
 
 // Records at photons in the middle of runs of the tree's blocks: few where light is smooth, one in each block where it
@@ -39,6 +42,7 @@ class IrradianceCache {
         uint32_t photonsPerRecord = 0;  // of its level
         Bandwidth bandwidth;
         std::span<const Rgb> irradiance;
+        Rgb variance{0};
     };
     // The records for runs of one length.
     struct Level {
@@ -47,6 +51,7 @@ class IrradianceCache {
         std::vector<std::atomic<uint8_t>> states;
         std::unique_ptr<Bandwidth[]> bandwidths;
         std::unique_ptr<Rgb[]> irradiance;  // of run i and group g: [i * (groups + 1) + g]
+        std::unique_ptr<Rgb[]> variances;   // of the sum over groups
     };
     bool answers(Level& level, size_t run, const DensityQuery& query, Record& record, std::vector<Rgb>& spare,
                  BandwidthScratch& scratch);
@@ -55,8 +60,8 @@ class IrradianceCache {
     bool sameSurface(const DensityQuery& query, uint32_t photon, BandwidthScratch& scratch) const;
     // Into `spare` where another thread is just making it.
     void recordOf(Level& level, size_t run, Record& record, std::vector<Rgb>& spare, BandwidthScratch& scratch);
-    void make(uint32_t photon, const BandwidthRule& rule, Bandwidth& bandwidth, std::span<Rgb> irradiance,
-              BandwidthScratch& scratch) const;
+    // Fills the record of its photon, all but the span: what that refers to is `irradiance`.
+    void make(Record& record, const BandwidthRule& rule, std::span<Rgb> irradiance, BandwidthScratch& scratch) const;
 
     PhotonSource source_;
     PhotonTreeView photons_;

@@ -260,6 +260,15 @@ class Maps(Cli):
         self.refused(*given, '--camera', 'all', '-o', 'f.exr', says='f.camera.exr')
         self.refused('render', scene, '--camera', 'all', '-o', 'g.exr', '--progressive', '2', says='--camera all', code=2)
 
+    def test_an_error_limit_ends_the_run_and_is_told(self):
+        result = self.run_lsde('render', SPHERE, '--size', '24x24', '--error', '0.01', '--no-cache', '-o', 'e.exr', '--json', '-')
+        figures = json.loads(result.stdout)
+        self.assertLessEqual(figures['estimatedRelMse']['total'], 0.01)
+        self.run_lsde('reference', SPHERE, '--size', '24x24', '--error', '0.1', '-o', 'r.exr')
+        self.refused('reference', SPHERE, '--error', '0.1', '--integrator', 'light', '-o', 'l.exr', says='--error', code=2)
+        self.refused('render', SPHERE, '--error', '0.1', '--progressive', '2', '-o', 'p.exr', says='--progressive', code=2)
+        self.run_lsde('render', SPHERE, '--error', '0', '-o', 'z.exr', code=2)
+
     def test_merging_refuses_overlaps_and_other_seeds(self):
         a = self.emit('a.lsmap', SPHERE, '--shard', '1/2')
         b = self.emit('b.lsmap', SPHERE, '--shard', '2/2')

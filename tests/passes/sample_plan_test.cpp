@@ -18,7 +18,7 @@ constexpr size_t at(int x, int y) { return static_cast<size_t>(y) * kWidth + sta
 SampleStatistics withSigma(float mean, float sigma) {
     SampleStatistics s;
     for (uint64_t i = 0; i < SamplePlan::kUniform; ++i)
-        s.add(i, mean + (i < SamplePlan::kUniform / 2 ? -sigma : sigma));
+        s.add(i, Rgb(mean + (i < SamplePlan::kUniform / 2 ? -sigma : sigma)), 0);
     return s;
 }
 SampleStatistics noisy(float mean) { return withSigma(mean, mean); }
@@ -140,7 +140,7 @@ TEST_CASE("counts are powers of two whose mean is the pixel's rate") {
 
 TEST_CASE("samples after the first change nothing") {
     SampleStatistics s = noisy(1);
-    s.add(SamplePlan::kUniform, 100);
+    s.add(SamplePlan::kUniform, Rgb(100), 0);
     CHECK(s.sum[0] == noisy(1).sum[0]);
     CHECK(s.sum[1] == noisy(1).sum[1]);
 }
