@@ -79,7 +79,7 @@ void EyeTracer::render(Film& film, std::vector<SampleStatistics>& statistics, co
                 const size_t pixel =
                     static_cast<size_t>(y) * static_cast<size_t>(film.width()) + static_cast<size_t>(x);
                 const uint64_t end = plan.count(pixel, span.end);
-                for (uint64_t i = plan.count(pixel, span.begin); i < end; ++i) {
+                for (uint64_t i = span.begin > 0 ? plan.count(pixel, span.begin) : 0; i < end; ++i) {
                     samplePixel(camera_.filmX() + x, camera_.filmY() + y, span.first + i, scratch);
                     statistics[pixel].add(i, scratch.sums.layer[0], std::sqrt(scratch.sums.photonVariance));
                     scratch.sums.photonVariance = 0;

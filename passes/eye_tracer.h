@@ -25,8 +25,8 @@ struct EyeSettings {
 };
 
 struct SampleSpan {
-    uint64_t first = 0;           // number of a pixel's first sample
-    uint64_t begin = 0, end = 0;  // samples a pixel on average, since the first
+    uint64_t first = 0;         // number of a pixel's first sample
+    double begin = 0, end = 0;  // samples a pixel on average, since the first
 };
 
 struct EyeCounters {

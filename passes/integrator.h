@@ -30,13 +30,14 @@ struct IntegratorInput {
 class Integrator {
   public:
     virtual ~Integrator() = default;
-    // Samples [begin, end) of every pixel (or as many light paths as there are pixels, each).
-    virtual void render(uint64_t begin, uint64_t end, RunContext& run) = 0;
-    // The mean of `samples` samples.
-    virtual RgbImage develop(int layer, uint64_t samples) const = 0;
+    // Samples [begin, end) of every pixel (or as many light paths as there are pixels, each). Numbers of samples are
+    // means over the pixels: of a fraction, as many pixels get one more. The first begin of all is whole.
+    virtual void render(double begin, double end, RunContext& run) = 0;
+    // The mean of `samples` samples, at least one.
+    virtual RgbImage develop(int layer, double samples) const = 0;
     virtual uint64_t notFinite() const = 0;
     // Of that mean; none from methods that do not know.
-    virtual std::optional<PictureError> error(uint64_t /*samples*/) const { return std::nullopt; }
+    virtual std::optional<PictureError> error(double /*samples*/) const { return std::nullopt; }
 };
 
 struct IntegratorEntry {

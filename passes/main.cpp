@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -219,8 +220,8 @@ struct RenderOptions {
     fs::path scene, output;
     RenderSettings settings;
     bool noCache = false;
-    uint64_t photons = 0, spp = 0;
-    double wall = 0, cpu = 0, error = 0;
+    uint64_t photons = 0;
+    double spp = 0, wall = 0, cpu = 0, error = 0;
     std::string integrator = "photon", size, crop, index = "kd", indirect = "photons", only, lights;
     std::vector<std::string> paths;
 };
@@ -303,6 +304,7 @@ void writePicture(const fs::path& file, const RenderResult& r, RunContext& run) 
 Json pictureFigures(const fs::path& file, const RenderResult& r) {
     Json j;
     j["samplesPerPixel"] = r.samples;
+    if (r.samples == std::floor(r.samples)) j["samplesPerPixel"] = static_cast<uint64_t>(r.samples);
     j["notFinite"] = r.notFinite;
     if (r.relativeError)
         j["estimatedRelMse"] = {{"total", r.relativeError->total()},
@@ -366,7 +368,9 @@ void addRender(CLI::App& app, RenderOptions& o) {
     app.add_option("--photons", o.photons, "light paths to emit (default 1000000)")
         ->check(CLI::PositiveNumber)
         ->type_name("N");
-    app.add_option("--spp", o.spp, "samples a pixel (default 64)")->check(CLI::PositiveNumber)->type_name("N");
+    app.add_option("--spp", o.spp, "samples a pixel, on average, at least 1 (default 64)")
+        ->check(CLI::Range(1.0, 1e9))
+        ->type_name("N");
     app.add_option("--time", o.wall, "wall seconds for the whole run")->check(CLI::PositiveNumber)->type_name("SEC");
     app.add_option("--cpu-time", o.cpu, "CPU seconds of all threads for the whole run")
         ->check(CLI::PositiveNumber)

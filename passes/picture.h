@@ -37,7 +37,7 @@ struct PictureFacts {
     std::string only;  // empty: all paths
     uint64_t seed = 0;
     uint64_t photons = 0;  // light paths emitted
-    uint64_t samples = 0;  // a pixel
+    double samples = 0;    // a pixel, on average
 };
 
 ExrMetadata describePicture(const Scene& scene, const Camera& camera, const RenderLayers& layers,

@@ -15,7 +15,7 @@ namespace lsde {
 
 namespace {
 
-constexpr uint64_t kDefaultSamples = 64;
+constexpr double kDefaultSamples = 64;
 // Of a time limit, where there are caustics: what the pixels can spare, within bounds.
 constexpr double kLeastEmissionShare = 0.33, kMostEmissionShare = 0.5;
 constexpr double kPixelSeconds = 1e-4;  // for a dozen samples, roughly, of a pixel that sees a surface
@@ -23,38 +23,42 @@ constexpr uint32_t kPilotRadiusPhotons = 50;
 
 // What ends the camera pass.
 struct SampleLimits {
-    uint64_t begin = 0;             // number of the first sample
-    std::optional<uint64_t> count;  // samples a pixel
+    uint64_t begin = 0;           // number of the first sample
+    std::optional<double> count;  // samples a pixel
     std::optional<Clock> clock;
     double reserve = 0;           // s, kept for what comes after
     std::optional<double> error;  // of the estimated relMSE
+    bool whole = false;           // every pixel gets the same number
 };
 
 // Of the picture as far as it has come.
-std::optional<PictureError::Relative> relativeError(const Integrator& integrator, uint64_t samples) {
+std::optional<PictureError::Relative> relativeError(const Integrator& integrator, double samples) {
     const auto error = integrator.error(samples);
     return error ? std::optional(error->relativeTo(integrator.develop(0, samples))) : std::nullopt;
 }
 
 // Samples after `done` that an error of the camera's part would take to come down to what the photons leave of the
 // limit; 0: it is there, or the photons alone exceed it and samples cannot help.
-uint64_t samplesForError(const Integrator& integrator, uint64_t done, double limit) {
-    constexpr uint64_t kLeast = SamplePlan::kUniform + 2;  // fewer say too little of the noise
+double samplesForError(const Integrator& integrator, double done, double limit) {
+    constexpr double kLeast = SamplePlan::kUniform + 2;  // fewer say too little of the noise
     constexpr double kSmallPart = 0.1;
     if (done < kLeast) return kLeast - done;
     const PictureError::Relative error = relativeError(integrator, done).value();
     if (error.total() <= limit) return 0;
     const double left = std::max(limit - error.photons, kSmallPart * error.photons);
     if (error.camera <= left) return 0;
-    const double more = static_cast<double>(done) * (error.camera / left - 1);
-    return static_cast<uint64_t>(std::clamp(more, 1.0, static_cast<double>(done)));
+    return std::clamp(std::floor(done * (error.camera / left - 1)), 1.0, done);
 }
 
 // Samples until the count or the time is reached; returns how many. At least one is taken.
-uint64_t takeSamples(Integrator& integrator, const SampleLimits& limits, RunContext& run, bool& interrupted) {
+double takeSamples(Integrator& integrator, const SampleLimits& limits, RunContext& run, bool& interrupted) {
+    // Fractions are few, so that they are exact in decimal as well; less than the last is lost of the time.
+    constexpr double kFraction = 1.0 / 64, kLeastStep = 1.0 / 16;
+    // Up to so many samples are taken at once where time ends: what they cost is then known well enough.
+    constexpr double kLastSamples = 2, kSure = 0.95;
     const PhaseTimer timer(run, "camera");
-    uint64_t done = 0;
-    uint64_t step = 1;
+    const auto first = static_cast<double>(limits.begin);
+    double done = 0, step = 1;
     const double start = limits.clock ? limits.clock->used() : 0;
     double usedBefore = 0;
     while (!limits.count || done < *limits.count) {
@@ -63,27 +67,28 @@ uint64_t takeSamples(Integrator& integrator, const SampleLimits& limits, RunCont
             break;
         }
         if (limits.error) {
-            const uint64_t more = samplesForError(integrator, done, *limits.error);
+            const double more = samplesForError(integrator, done, *limits.error);
             if (more == 0) break;
             step = limits.clock ? std::min(step, more) : more;
         }
         if (limits.count) step = std::min(step, *limits.count - done);
-        integrator.render(limits.begin + done, limits.begin + done + step, run);
+        integrator.render(first + done, first + done + step, run);
         done += step;
         if (!limits.clock) {
-            run.progress("camera", static_cast<double>(done) / static_cast<double>(limits.count.value_or(2 * done)));
-            step = std::min<uint64_t>(2 * step, 16);
+            run.progress("camera", done / limits.count.value_or(2 * done));
+            step = std::min(2 * step, 16.0);
             continue;
         }
         const Clock& clock = *limits.clock;
         // As the last ones: the first ones find out about the light, and later ones go where there is more to do.
         const double used = clock.used() - start;
-        const double perSample = (used - usedBefore) / static_cast<double>(step);
+        const double perSample = (used - usedBefore) / step;
         usedBefore = used;
         const double affordable = (clock.left() - limits.reserve) / perSample;
         run.progress("camera", used / std::max(1e-9, clock.limit() - limits.reserve - start));
-        if (affordable < 0.5) break;
-        step = std::min<uint64_t>(std::max<uint64_t>(1, static_cast<uint64_t>(0.5 * affordable)), 64);
+        if (affordable < (limits.whole ? 0.5 : kLeastStep)) break;
+        step = std::min((affordable > kLastSamples ? 0.5 : kSure) * affordable, 64.0);
+        step = limits.whole ? std::max(1.0, std::floor(step)) : std::max(1.0, std::floor(step / kFraction)) * kFraction;
     }
     return done;
 }
@@ -234,9 +239,9 @@ class Render {
     }
 
     // The camera pass, and its picture added to the mean; returns the samples taken.
-    uint64_t see(const PhotonGather* photons, const SampleLimits& limits, double weight) {
+    double see(const PhotonGather* photons, const SampleLimits& limits, double weight) {
         const auto integrator = method_.make({scene_, camera(), layers_, selected_, photons, run_.seed});
-        const uint64_t done = takeSamples(*integrator, limits, run_, result_.interrupted);
+        const double done = takeSamples(*integrator, limits, run_, result_.interrupted);
         std::vector<RgbImage> pictures;
         pictures.reserve(layers_.filmLayers().size());
         const int count = static_cast<int>(layers_.filmLayers().size());
@@ -275,7 +280,7 @@ class Render {
     std::vector<Camera> cameras_;
     size_t frame_ = 0;  // the camera whose picture is being made
     Clock clock_;
-    std::optional<uint64_t> samples_;
+    std::optional<double> samples_;
     std::optional<std::vector<Segment>> creases_;
     std::string noCaustics_;
     PhotonMap map_;
@@ -317,11 +322,14 @@ void Render::progressivePasses() {
     if (samples_.value_or(passes) < passes || photons < passes)
         throw UsageError(fmt::format("--progressive {}: expected at most --spp ({}) and --photons ({}) passes", passes,
                                      samples_.value_or(kDefaultSamples), photons));
+    if (samples_ && *samples_ != std::floor(*samples_))
+        throw UsageError(fmt::format("--spp {}: expected a whole number with --progressive", *samples_));
     const uint64_t seed = run_.seed;
     std::optional<PhotonMap> pilotMap;
     std::optional<PhotonGather> pilot;
     const AnyIndex* pilotIndex = nullptr;
-    std::optional<uint64_t> pathsEach, samplesEach;
+    std::optional<uint64_t> pathsEach;
+    std::optional<double> samplesEach;
     double longest = 0;
     for (uint32_t pass = 0; pass < passes && !result_.interrupted; ++pass) {
         if (clock_.limited() && pass > 0 && clock_.left() - reserve() < longest) break;
@@ -344,14 +352,14 @@ void Render::progressivePasses() {
         GatherSettings settings = gatherSettings();
         settings.progressive = {pilotIndex, kPilotRadiusPhotons, progressiveScale(pass)};
         const PhotonGather gather(gatherInput(map), settings, run_);
-        SampleLimits limits{result_.samples, samplesEach, {}, 0};
+        SampleLimits limits{static_cast<uint64_t>(result_.samples), samplesEach, {}, 0, {}, true};
         if (samples_) {
-            const IndexRange range = shardRange(*samples_, pass + 1, passes);
-            limits.count = range.end - range.begin;
+            const IndexRange range = shardRange(static_cast<uint64_t>(*samples_), pass + 1, passes);
+            limits.count = static_cast<double>(range.end - range.begin);
         } else if (!samplesEach) {
             limits.clock = clock_.slice(slice - (clock_.used() - start));
         }
-        const uint64_t done = see(&gather, limits, static_cast<double>(map.header.emittedPaths()));
+        const double done = see(&gather, limits, static_cast<double>(map.header.emittedPaths()));
         if (!samples_) samplesEach = done;
         longest = std::max(longest, clock_.used() - start);
         ++result_.passes;

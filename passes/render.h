@@ -26,7 +26,7 @@ struct RenderSettings {
     bool cache = true;                 // look for the map in the user's cache folder, keep it there
     bool otherScene = false;           // take a map of another scene
     std::optional<uint64_t> photons;   // default 1,000,000 without a time limit
-    std::optional<uint64_t> spp;       // default 64 without a time limit
+    std::optional<double> spp;         // default 64 without a time limit
     std::optional<double> wallLimit;   // s, of the whole run, process start included
     std::optional<double> cpuLimit;    // s, all threads
     std::optional<double> errorLimit;  // of the estimated relMSE (PictureError::relativeTo)
@@ -45,7 +45,7 @@ struct RenderResult {
     ImageFile image;
     ExrMetadata metadata;
     RgbImage picture;                                     // the full one
-    uint64_t samples = 0;                                 // per pixel, reached
+    double samples = 0;                                   // per pixel, reached
     std::optional<PictureError::Relative> relativeError;  // estimated, where the method can
     uint32_t passes = 0;                                  // progressive ones, reached
     uint64_t photons = 0;                                 // paths emitted for it, or those of the map

@@ -78,10 +78,13 @@ void SamplePlan::adapt(const std::vector<SampleStatistics>& statistics) {
     for (float& rate : rates_) rate = std::max(kLeastRate, rate + left);
 }
 
-uint64_t SamplePlan::count(size_t pixel, uint64_t samples) const {
-    if (samples <= kUniform || rates_.empty()) return samples;
+uint64_t SamplePlan::count(size_t pixel, double samples) const {
     const double u = static_cast<double>(mix64(pixel) >> 40) * 0x1p-24;
-    const double n = kUniform + static_cast<double>(rates_[pixel]) * static_cast<double>(samples - kUniform);
+    if (samples <= kUniform || rates_.empty()) {
+        const double whole = std::floor(samples);
+        return static_cast<uint64_t>(whole) + (u < samples - whole ? 1 : 0);
+    }
+    const double n = kUniform + static_cast<double>(rates_[pixel]) * (samples - kUniform);
     const uint64_t lower = std::bit_floor(static_cast<uint64_t>(n));
     return static_cast<double>(lower) * (1 + u) < n ? 2 * lower : lower;
 }

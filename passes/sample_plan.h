@@ -49,8 +49,8 @@ class SamplePlan {
     // Samples of the pixel for each one of the mean, after the first.
     float rate(size_t pixel) const { return rates_.empty() ? 1 : rates_[pixel]; }
 
-    // Samples of the pixel when the mean is `samples`.
-    uint64_t count(size_t pixel, uint64_t samples) const;
+    // Samples of the pixel when the mean is `samples`, at least 1.
+    uint64_t count(size_t pixel, double samples) const;
 
   private:
     std::vector<float> noiseAround(const std::vector<SampleStatistics>& statistics) const;

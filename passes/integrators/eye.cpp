@@ -19,9 +19,9 @@ class EyeIntegrator : public Integrator {
           tracer_(input.scene, input.camera, lights_, input.layers, photons ? input.photons : nullptr,
                   settings(photons), input.seed) {}
 
-    void render(uint64_t begin, uint64_t end, RunContext& run) override {
-        if (!first_) first_ = begin;
-        const uint64_t uniform = *first_ + SamplePlan::kUniform;
+    void render(double begin, double end, RunContext& run) override {
+        if (!first_) first_ = static_cast<uint64_t>(begin);
+        const auto uniform = static_cast<double>(*first_ + SamplePlan::kUniform);
         if (adaptive_ && begin < uniform && end >= uniform) {
             sample(begin, uniform, run);
             plan_.adapt(statistics_);
@@ -29,21 +29,22 @@ class EyeIntegrator : public Integrator {
         }
         if (begin < end) sample(begin, end, run);
     }
-    RgbImage develop(int layer, uint64_t samples) const override { return film_.develop(layer, counts(samples)); }
-    std::optional<PictureError> error(uint64_t samples) const override {
+    RgbImage develop(int layer, double samples) const override { return film_.develop(layer, counts(samples)); }
+    std::optional<PictureError> error(double samples) const override {
         return pictureError(statistics_, counts(samples));
     }
     uint64_t notFinite() const override { return notFinite_; }
 
   private:
-    std::vector<double> counts(uint64_t samples) const {
+    std::vector<double> counts(double samples) const {
         std::vector<double> counts(statistics_.size());
         for (size_t i = 0; i < counts.size(); ++i) counts[i] = static_cast<double>(plan_.count(i, samples));
         return counts;
     }
-    void sample(uint64_t begin, uint64_t end, RunContext& run) {
+    void sample(double begin, double end, RunContext& run) {
         EyeCounters counters;
-        tracer_.render(film_, statistics_, plan_, {*first_, begin - *first_, end - *first_}, run, counters);
+        const auto first = static_cast<double>(*first_);
+        tracer_.render(film_, statistics_, plan_, {*first_, begin - first, end - first}, run, counters);
         run.rays += counters.rays;
         notFinite_ += counters.notFinite;
     }

@@ -1,6 +1,7 @@
 // Light tracing (Arvo 1986; Dutre et al. 1993): light paths, each non-specular vertex connected to the camera. Splats
 // are summed in fixed point, so that the picture does not depend on the order of the threads.
 #include <array>
+#include <cmath>
 #include <mutex>
 
 #include "base/error.h"
@@ -32,8 +33,8 @@ class LightIntegrator : public Integrator {
           pixels_(static_cast<uint64_t>(camera_.filmWidth()) * static_cast<uint64_t>(camera_.filmHeight())),
           sums_(static_cast<size_t>(1 + layers_.paths()) * pixels_) {}
 
-    void render(uint64_t begin, uint64_t end, RunContext& run) override {
-        const uint64_t first = begin * pixels_, last = end * pixels_;
+    void render(double begin, double end, RunContext& run) override {
+        const uint64_t first = pathsOf(begin), last = pathsOf(end);
         std::mutex mutex;
         run.pool.forEach((last - first + kPathsPerChunk - 1) / kPathsPerChunk, [&](size_t chunk) {
             run.checkInterrupt();
@@ -48,10 +49,10 @@ class LightIntegrator : public Integrator {
         });
     }
 
-    RgbImage develop(int layer, uint64_t samples) const override {
+    RgbImage develop(int layer, double samples) const override {
         RgbImage image(camera_.filmWidth(), camera_.filmHeight());
         if (layer > layers_.paths()) return image;  // albedo, normal, depth: nothing is seen from the light
-        const double scale = 1 / (static_cast<double>(samples) * static_cast<double>(pixels_));
+        const double scale = 1 / static_cast<double>(pathsOf(samples));
         for (size_t p = 0; p < pixels_; ++p)
             for (int c = 0; c < 3; ++c)
                 image.pixels[p][c] =
@@ -61,6 +62,10 @@ class LightIntegrator : public Integrator {
     uint64_t notFinite() const override { return notFinite_; }
 
   private:
+    uint64_t pathsOf(double samples) const {
+        return static_cast<uint64_t>(std::llround(samples * static_cast<double>(pixels_)));
+    }
+
     struct Tracer {
         const LightIntegrator& self;
         WalkScratch scratch;

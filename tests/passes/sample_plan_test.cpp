@@ -76,6 +76,23 @@ TEST_CASE("a pixel's samples do not depend on its own values") {
     CHECK(after.rate(at(31, 15)) > before.rate(at(31, 15)));
 }
 
+TEST_CASE("numbers of samples may be fractions: as many pixels get one more") {
+    const SamplePlan even(kWidth, kHeight);
+    const SamplePlan adapted = planOfTwoSigmas();
+    for (const SamplePlan* plan : {&even, &adapted})
+        for (const double mean : {1.25, 1.75, 7.5, 40.25}) {
+            CAPTURE(mean);
+            double total = 0;
+            for (size_t i = 0; i < kPixels; ++i) {
+                total += static_cast<double>(plan->count(i, mean));
+                REQUIRE(plan->count(i, mean) >= plan->count(i, mean - 0.25));
+            }
+            CHECK(total / kPixels == doctest::Approx(mean).epsilon(0.03));
+        }
+    CHECK(even.count(7, 1) == 1);
+    CHECK(even.count(7, 5) == 5);
+}
+
 TEST_CASE("without noise every pixel gets the same") {
     for (const float mean : {0.0F, 1.0F}) {
         SamplePlan plan(kWidth, kHeight);
