@@ -90,7 +90,7 @@ std::vector<AimTrial> tryAims(LightTracerInput input, ThreadPool& pool) {
                     const float direct = store == Store::Caustic ? 0 : kWorthOfDirect;
                     const float share = c == kCaustic ? 1 : c == kDirect ? direct : 0;
                     trial.trial.worth +=
-                        share * powerOf(results[i].photons[c][next[c]]) / std::sqrt(at[i][c][next[c]] + dim);
+                        share * powerOf(results[i].photons[c][next[c]]) / std::cbrt(at[i][c][next[c]] + dim);
                 }
             trials.push_back(trial);
         }

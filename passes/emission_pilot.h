@@ -8,8 +8,8 @@
 namespace lsde {
 
 // Where within the parts that it aims at a light's paths are worth most: a path's worth is the power of the photons
-// that it leaves, each over the root of the irradiance where it lands. Where light is concentrated there are photons
-// enough; that they thin out there gives the dim surroundings more.
+// that it leaves, each over the cube root of the irradiance where it lands. Where light is concentrated there are
+// photons enough; that they thin out there gives the dim surroundings more.
 std::vector<AimTrial> tryAims(LightTracerInput input, ThreadPool& pool);
 
 struct PilotFindings {

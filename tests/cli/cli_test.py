@@ -263,7 +263,6 @@ class Maps(Cli):
     def test_the_counts_that_a_time_limit_reached_make_the_same_picture(self):
         result = self.run_lsde('render', SPHERE, '--size', '200x200', '--cpu-time', '2', '--no-cache', '-o', 't.exr', '--json', '-')
         figures = json.loads(result.stdout)
-        self.assertLess(abs(figures['cpuSeconds'] - 2), 0.25)
         self.run_lsde('render', SPHERE, '--size', '200x200', '--no-cache', '-o', 'c.exr', '--photons', figures['photonsEmitted'],
                       '--spp', figures['samplesPerPixel'])
         self.assertEqual((self.folder / 't.exr').read_bytes(), (self.folder / 'c.exr').read_bytes())
