@@ -16,8 +16,8 @@ std::vector<LightPaths> tracePilot(LightTracerInput& input, uint64_t paths, Thre
     return results;
 }
 
-float powerOf(const PackedPhoton& p) {
-    const Rgb power = unpackPower(p.payload.power);
+float powerOf(const PhotonPayload& p) {
+    const Rgb power = unpackPower(p.power);
     return power.x + power.y + power.z;
 }
 
@@ -36,8 +36,7 @@ class PilotIrradiance {
         KdIndex(photons).nearest(photon.position, kNeighbours, kInfinity, found);
         float power = 0, rim = 0;
         for (const Neighbour& n : found) {
-            const Rgb each = unpackPower(photons.payload[n.index].power);
-            power += each.x + each.y + each.z;
+            power += powerOf(photons.payload[n.index]);
             rim = std::max(rim, n.distanceSquared);
         }
         return rim > 0 ? power / rim : kInfinity;
@@ -74,7 +73,7 @@ std::vector<AimTrial> tryAims(LightTracerInput input, ThreadPool& pool) {
     double power = 0, area = 0;
     for (size_t i = 0; i < results.size(); ++i)
         for (size_t p = 0; p < at[i][kCaustic].size(); ++p) {
-            const double each = static_cast<double>(powerOf(results[i].photons[kCaustic][p]));
+            const double each = static_cast<double>(powerOf(results[i].photons[kCaustic][p].payload));
             power += each;
             area += each / static_cast<double>(at[i][kCaustic][p]);
         }
@@ -90,7 +89,7 @@ std::vector<AimTrial> tryAims(LightTracerInput input, ThreadPool& pool) {
                     const float direct = store == Store::Caustic ? 0 : kWorthOfDirect;
                     const float share = c == kCaustic ? 1 : c == kDirect ? direct : 0;
                     trial.trial.worth +=
-                        share * powerOf(results[i].photons[c][next[c]]) / std::cbrt(at[i][c][next[c]] + dim);
+                        share * powerOf(results[i].photons[c][next[c]].payload) / std::cbrt(at[i][c][next[c]] + dim);
                 }
             trials.push_back(trial);
         }

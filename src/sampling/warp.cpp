@@ -16,8 +16,6 @@ Vec3 squareToCosineHemisphere(Vec2 u) {
     return {d, safeSqrt(1 - glm::dot(d, d))};
 }
 
-Vec3 squareToSphere(Vec2 u) { return squareToCone(u, 2); }
-
 Vec3 squareToCone(Vec2 u, float oneMinusCosMax) {
     const float oneMinusCos = u.x * oneMinusCosMax;
     const float sine = safeSqrt(oneMinusCos * (2 - oneMinusCos));

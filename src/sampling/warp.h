@@ -8,10 +8,8 @@ namespace lsde {
 Vec2 squareToDisk(Vec2 u);              // concentric (Shirley & Chiu 1997), unit disc
 Vec3 squareToCosineHemisphere(Vec2 u);  // pdfW = cos / pi
 inline float cosineHemispherePdf(float cosTheta) { return cosTheta > 0 ? cosTheta * kInvPi : 0; }
-Vec3 squareToSphere(Vec2 u);  // pdfW = 1 / (4 pi)
-inline constexpr float kUniformSpherePdf = 0.25F * kInvPi;
-// Directions within the cone of half angle acos(cosMax) about +z; oneMinusCosMax in place of cosMax keeps narrow cones
-// exact. pdfW = 1 / (2 pi oneMinusCosMax).
+// Directions within the cone of half angle acos(cosMax) about +z (all of them: oneMinusCosMax 2); oneMinusCosMax in
+// place of cosMax keeps narrow cones exact. pdfW = 1 / (2 pi oneMinusCosMax).
 Vec3 squareToCone(Vec2 u, float oneMinusCosMax);
 float conePdf(float oneMinusCosMax);
 // The other way: the point of [0,1)^2 that is mapped there, to rounding.

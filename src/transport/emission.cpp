@@ -134,14 +134,15 @@ EmissionSampler::Aim EmissionSampler::aimOf(const Light& light, const std::vecto
 }
 
 void EmissionSampler::learn(std::span<const AimTrial> trials) {
+    std::vector<std::vector<std::vector<PrimaryDensity::Trial>>> of(aims_.size());  // [light][part]
+    for (size_t light = 0; light < aims_.size(); ++light) of[light].resize(aims_[light].parts.size());
+    for (const AimTrial& t : trials) of[t.light][t.part].push_back(t.trial);
     for (size_t light = 0; light < aims_.size(); ++light) {
-        std::vector<std::vector<PrimaryDensity::Trial>> ofPart(aims_[light].parts.size());
-        for (const AimTrial& t : trials)
-            if (t.light == light) ofPart[t.part].push_back(t.trial);
-        aims_[light].learnt.assign(ofPart.size(), {});
+        aims_[light].learnt.assign(of[light].size(), {});
         // The whole emission stays as it is: it bounds the weights of all that was learnt wrongly.
-        for (size_t part = 1; part < ofPart.size(); ++part)
-            aims_[light].learnt[part] = PrimaryDensity(std::move(ofPart[part]), dimensionsOf(scene_.lights()[light]));
+        for (size_t part = 1; part < of[light].size(); ++part)
+            aims_[light].learnt[part] =
+                PrimaryDensity(std::move(of[light][part]), dimensionsOf(scene_.lights()[light]));
     }
 }
 
@@ -151,9 +152,10 @@ EmissionSampler::Draw EmissionSampler::draw(const Aim& aim, size_t part, Primary
     return drawn;
 }
 
-float EmissionSampler::learntDensity(const Aim& aim, size_t part, const PrimaryPoint& u, Draw drawn) {
+template <typename Numbers>
+float EmissionSampler::learntDensity(const Aim& aim, size_t part, Draw drawn, Numbers&& numbers) {
     if (part == drawn.part) return drawn.learnt;
-    return aim.learnt.empty() ? 1 : aim.learnt[part].pdf(u);
+    return aim.learnt.empty() || aim.learnt[part].even() ? 1 : aim.learnt[part].pdf(numbers());
 }
 
 float EmissionSampler::aimedConePdf(const Aim& aim, Vec3 position, Vec3 direction, const DirectionMap& all,
@@ -163,13 +165,11 @@ float EmissionSampler::aimedConePdf(const Aim& aim, Vec3 position, Vec3 directio
         if (!(aim.parts.pmf(i) > 0)) continue;
         const Cone cone = coneTo(targets_[i - 1], position);
         if (i != drawn.part && !within(cone, direction)) continue;
-        PrimaryPoint there{};
-        if (i != drawn.part && !aim.learnt.empty()) {
+        const float learnt = learntDensity(aim, i, drawn, [&] {
             const Vec2 square = directionsOf(cone, all).square(direction);
-            there = aim.positioned ? primaryPoint({u[0], u[1]}, square) : primaryPoint(square, Vec2(0));
-        }
-        pdf += aim.parts.pmf(i) * learntDensity(aim, i, there, drawn) *
-               (cone.everything ? all.pdf(direction) : conePdf(cone.oneMinusCos));
+            return aim.positioned ? primaryPoint({u[0], u[1]}, square) : primaryPoint(square, Vec2(0));
+        });
+        pdf += aim.parts.pmf(i) * learnt * (cone.everything ? all.pdf(direction) : conePdf(cone.oneMinusCos));
     }
     return pdf;
 }
@@ -181,8 +181,9 @@ float EmissionSampler::aimedDiscPdf(const Aim& aim, const DirectionalLight& ligh
         const Sphere& s = targets_[i - 1];
         const Vec2 d = discOffset(s, position, frame);
         if (i != drawn.part && glm::dot(d, d) > square(s.radius)) continue;
-        const PrimaryPoint there = primaryPoint(diskToSquare(d / s.radius), Vec2(0));
-        pdf += aim.parts.pmf(i) * learntDensity(aim, i, there, drawn) / (kPi * square(s.radius));
+        const float learnt =
+            learntDensity(aim, i, drawn, [&] { return primaryPoint(diskToSquare(d / s.radius), Vec2(0)); });
+        pdf += aim.parts.pmf(i) * learnt / (kPi * square(s.radius));
     }
     return pdf;
 }

@@ -87,8 +87,9 @@ class EmissionSampler {
     };
     // Maps even numbers to those of a part.
     static Draw draw(const Aim& aim, size_t part, PrimaryPoint& u);
-    // Of a part's numbers; those of the drawn part are not asked for again.
-    static float learntDensity(const Aim& aim, size_t part, const PrimaryPoint& u, Draw drawn);
+    // Of a part's numbers, which are found only where they are needed.
+    template <typename Numbers>
+    static float learntDensity(const Aim& aim, size_t part, Draw drawn, Numbers&& numbers);
     bool sampleArea(const AreaLight& light, const Aim& aim, Sampler& sampler, LightPathStart& start) const;
     bool samplePoint(const PointLight& light, const Aim& aim, Sampler& sampler, LightPathStart& start) const;
     void sampleDirectional(const DirectionalLight& light, const Aim& aim, Sampler& sampler,

@@ -72,8 +72,7 @@ TEST_CASE("hemisphere and sphere have the densities they state") {
               [](Vec3 v) { return cosineHemispherePdf(v.z); })
               .accepted(kTests));
     CHECK(test::chiSquaredOnSphere(
-              grid, [&] { return std::optional(squareToSphere(random.uniform2D())); },
-              [](Vec3) { return kUniformSpherePdf; })
+              grid, [&] { return std::optional(squareToCone(random.uniform2D(), 2)); }, [](Vec3) { return conePdf(2); })
               .accepted(kTests));
 }
 
