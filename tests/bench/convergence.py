@@ -108,6 +108,14 @@ def command_page(arguments):
     arguments.output.write_text(page.page(read_json(arguments.result)))
 
 
+def command_plot(arguments):
+    try:
+        drawn = page.picture(read_json(arguments.result), arguments.scene, arguments.path_class, arguments.title)
+    except KeyError as problem:
+        sys.exit(f'{arguments.result}: {problem.args[0]}')
+    arguments.output.write_text(drawn)
+
+
 def command_table(arguments):
     print(results.text_report(read_json(arguments.result)['rows']))
 
@@ -176,6 +184,14 @@ def arguments_of(words):
     make_page.add_argument('result')
     make_page.add_argument('-o', '--output', type=Path, required=True)
     make_page.set_defaults(action=command_page)
+
+    plot = commands.add_parser('plot', help='the error curves of one scene and path class as an SVG file')
+    plot.add_argument('result')
+    plot.add_argument('--scene', required=True)
+    plot.add_argument('--class', dest='path_class', default='whole', help='default: whole')
+    plot.add_argument('--title', required=True)
+    plot.add_argument('-o', '--output', type=Path, required=True)
+    plot.set_defaults(action=command_plot)
 
     table = commands.add_parser('table', help='the tables of a result')
     table.add_argument('result')

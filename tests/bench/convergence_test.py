@@ -159,6 +159,17 @@ class Report(unittest.TestCase):
         rows[0]['relMSE'] = rows[0]['relMSE'] | dict(variance=.3, bias2=-1e-5, bias2_sem=1e-4)
         return rows
 
+    def test_a_single_plot_is_well_formed_and_shows_each_method_once(self):
+        result = dict(rows=self.rows(), seeds=1, program='0' * 64, left_out=[])
+        scene, path_class = next(iter(results.charts(result['rows'])))
+        shown = results.charts(result['rows'])[scene, path_class]
+        svg = ElementTree.fromstring(page.picture(result, scene, path_class, 'glass & light'))
+        names = [t.text for t in svg.iter('{http://www.w3.org/2000/svg}tspan')]
+        self.assertEqual(names, list(shown))
+        self.assertEqual(len(list(svg.iter('{http://www.w3.org/2000/svg}polyline'))), len(shown))
+        with self.assertRaisesRegex(KeyError, 'no such scene.*expected one of'):
+            page.picture(result, 'no such scene', path_class, '')
+
     def test_the_page_is_well_formed_and_needs_nothing_else(self):
         html = page.page(dict(rows=self.rows(), seeds=1, program='0' * 64, left_out=[['a', 'b', '<c>']]))
         plots = re.findall(r'<svg.*?</svg>', html, re.S)

@@ -7,6 +7,10 @@ import results
 # Colours that colour-blind readers tell apart (Okabe & Ito 2008), given to the methods in their order.
 COLOURS = ('#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#000000')
 WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 520, 360, 62, 12, 10, 40  # of a plot and its margins, in pixels
+DASHES = {'error': '', 'variance': '6 4', 'bias2': '2 3'}
+# What is drawn of the guide line, which knows no bounds.
+CLIP = (f'<clipPath id="inside"><rect x="{LEFT}" y="{TOP}" width="{WIDTH - LEFT - RIGHT}" '
+        f'height="{HEIGHT - TOP - BOTTOM}"/></clipPath>')
 
 STYLE = '''body { font: 15px/1.45 system-ui, sans-serif; max-width: 76rem; margin: 1.5rem auto; padding: 0 1rem; }
 .charts { display: flex; flex-wrap: wrap; gap: 1rem 2rem; } figure { margin: 0; } figcaption { font-weight: 600; }
@@ -95,25 +99,49 @@ def curve(points, x, y, colour, dash, name):
     return parts
 
 
-def chart(methods, colours):
+def chart(methods, colours, parts=('error', 'variance', 'bias2')):
     """One plot as SVG; a sentence where there is nothing that a logarithm shows."""
-    curves = [(method, part, dash, points) for method, rows in methods.items()
-              for part, dash in (('error', ''), ('variance', '6 4'), ('bias2', '2 3'))
+    curves = [(method, part, DASHES[part], points) for method, rows in methods.items() for part in parts
               if (points := series(rows, part))]
     if not curves:
         return '<p>Nothing above zero.</p>'
     times = [p[0] for *_, points in curves for p in points]
     values = [p[1] for *_, points in curves for p in points]
     x, y = Axis(times, LEFT, WIDTH - RIGHT), Axis(values, HEIGHT - BOTTOM, TOP)
-    parts = grid(x, y)
+    shapes = grid(x, y)
     guide = max(p[0] * p[1] for p in curves[0][3])  # error times CPU seconds stays the same
     begin, end = min(times), max(times)
-    parts.append(f'<line x1="{x(begin):.1f}" y1="{y(guide / begin):.1f}" x2="{x(end):.1f}" y2="{y(guide / end):.1f}" '
-                 'stroke="#bbb" clip-path="url(#inside)"/>')
+    shapes.append(f'<line x1="{x(begin):.1f}" y1="{y(guide / begin):.1f}" x2="{x(end):.1f}" y2="{y(guide / end):.1f}" '
+                  'stroke="#bbb" clip-path="url(#inside)"/>')
     for method, part, dash, points in curves:
-        parts += curve(points, x, y, colours[method], dash, f'{method}, {part}')
+        shapes += curve(points, x, y, colours[method], dash, f'{method}, {part}')
     return (f'<svg width="{WIDTH}" height="{HEIGHT}" viewBox="0 0 {WIDTH} {HEIGHT}" role="img">'
-            + ''.join(parts) + '</svg>')
+            + ''.join(shapes) + '</svg>')
+
+
+def colours_of(result):
+    names = list(dict.fromkeys(row['method'] for row in result['rows']))
+    return {name: COLOURS[i % len(COLOURS)] for i, name in enumerate(names)}
+
+
+def picture(result, scene, path_class, title):
+    """One plot as an SVG file of its own, its error curves alone, with a title and the methods' names. Raises KeyError
+    if there is no such scene or class."""
+    charts = results.charts(result['rows'])
+    if (scene, path_class) not in charts:
+        there = ', '.join(f'"{name}" "{c}"' for name, c in charts)
+        raise KeyError(f'"{scene}" "{path_class}": not in the result, expected one of {there}')
+    methods = charts[scene, path_class]
+    colours = colours_of(result)
+    top = 26
+    names = ''.join(f'<tspan fill="{colours[name]}" dx="12" font-weight="600">{escape(name)}</tspan>'
+                    for name in methods)
+    inner = chart(methods, colours, parts=('error',))
+    return (f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{HEIGHT + top}" '
+            f'viewBox="0 0 {WIDTH} {HEIGHT + top}"><style>text {{ font: 11px system-ui, sans-serif; fill: #333; }} '
+            f'.title {{ font-size: 13px; }}</style><rect width="100%" height="100%" fill="#fff"/>{CLIP}'
+            f'<text class="title" x="{LEFT}" y="17">{escape(title)}:{names}</text>'
+            f'<g transform="translate(0 {top})">{inner}</g></svg>\n')
 
 
 def html_table(header, lines):
@@ -125,15 +153,12 @@ def html_table(header, lines):
 def page(result):
     """The whole page as text."""
     charts = results.charts(result['rows'])
-    names = list(dict.fromkeys(row['method'] for row in result['rows']))
-    colours = {name: COLOURS[i % len(COLOURS)] for i, name in enumerate(names)}
-    key = ''.join(f'<span style="color: {colours[name]}">{escape(name)}</span>' for name in names)
-    clip = (f'<svg width="0" height="0"><clipPath id="inside"><rect x="{LEFT}" y="{TOP}" '
-            f'width="{WIDTH - LEFT - RIGHT}" height="{HEIGHT - TOP - BOTTOM}"/></clipPath></svg>')
+    colours = colours_of(result)
+    key = ''.join(f'<span style="color: {colours[name]}">{escape(name)}</span>' for name in colours)
     parts = ['<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>lsde: convergence</title>'
              f'<style>{STYLE}</style><h1>Convergence</h1><p>{LEGEND}</p>'
              f'<p>Seeds: {result["seeds"]}. Program: {result["program"][:16]}.</p>'
-             f'<p class="key">{key}</p>{clip}']
+             f'<p class="key">{key}</p><svg width="0" height="0">{CLIP}</svg>']
     for scene in dict.fromkeys(scene for scene, _ in charts):
         parts.append(f'<h2>{escape(scene)}</h2><div class="charts">')
         for (name, path_class), methods in charts.items():
