@@ -154,8 +154,8 @@ void EyeTracer::addEmission(const Vertex& v, const EyePath& path, EyeScratch& sc
     if (hit == EyeWalkClass::EmitterHit::Dropped) return;
     float weight = 1;
     if (hit == EyeWalkClass::EmitterHit::Mis)
-        weight = powerHeuristic(path.misPdf,
-                                directLightPdf(scene_, lights_.at(path.place), v.surface, v.woWorld, path.travelled));
+        weight = powerHeuristic(path.misPdf, directLightPdf(scene_, lights_.at(path.place), path.place.position,
+                                                            v.surface, -v.woWorld, path.travelled));
     scratch.sums.contribute(layers_, path.state.throughput * radiance * weight, layers_.filter().light(), path.mask);
 }
 

@@ -1,5 +1,6 @@
 #include "scene/light.h"
 
+#include "sampling/spherical_triangle.h"
 #include "sampling/warp.h"
 
 namespace lsde {
@@ -16,6 +17,14 @@ Corners corners(const Mesh& mesh, uint32_t triangle) {
 }
 
 Vec3 scaledNormal(const Corners& c) { return glm::cross(c.b - c.a, c.c - c.a); }
+
+// Of a point on the triangle: weights of b and c.
+Vec2 barycentric(const Corners& c, Vec3 p) {
+    const Vec3 n = scaledNormal(c);
+    const float inverse = 1 / lengthSquared(n);
+    return {glm::dot(glm::cross(p - c.a, c.c - c.a), n) * inverse,
+            glm::dot(glm::cross(c.b - c.a, p - c.a), n) * inverse};
+}
 
 // Mean luminance of a triangle's emission: the factor, times the texture's mean over a fixed grid of points.
 double meanLuminance(const AreaLight& light, uint32_t triangle) {
@@ -73,21 +82,36 @@ Rgb AreaLight::radiance(uint32_t triangle, float u, float v) const {
 
 LightSample AreaLight::sampleToward(Vec3 p, Vec2 u) const {
     const auto t = static_cast<uint32_t>(triangles.sample(u.x));
-    const Vec2 b = squareToTriangle(u);
     const Corners c = corners(*mesh, t);
-    const Vec3 q = (1 - b.x - b.y) * c.a + b.x * c.b + b.y * c.c;
+    const Vec3 normal = glm::normalize(scaledNormal(c));
+    const float height = glm::dot(normal, p - c.a);
+    if (!(twoSided ? height != 0 : height > 0)) return {};
     LightSample s;
-    const Vec3 d = q - p;
-    const float d2 = lengthSquared(d);
-    s.distance = std::sqrt(d2);
+    Vec2 b;
+    if (const auto seen = SphericalTriangle::seen(c.a - p, c.b - p, c.c - p)) {
+        s.wi = seen->sample(u);
+        s.distance = -height / glm::dot(normal, s.wi);
+        b = barycentric(c, p + s.distance * s.wi);
+        s.pdfW = triangles.pmf(t) / seen->solidAngle();
+    } else {
+        b = squareToTriangle(u);
+        const Vec3 d = (1 - b.x - b.y) * c.a + b.x * c.b + b.y * c.c - p;
+        s.distance = glm::length(d);
+        s.wi = d / s.distance;
+        s.pdfW = pdfA(t) * square(s.distance) / std::fabs(glm::dot(normal, s.wi));
+    }
     if (!(s.distance > 0)) return {};
-    s.wi = d / s.distance;
-    const float cosine = -glm::dot(glm::normalize(scaledNormal(c)), s.wi);
-    if (!(twoSided ? cosine != 0 : cosine > 0)) return {};
     s.radiance = radiance(t, b.x, b.y);
-    s.pdfW = pdfA(t) * d2 / std::fabs(cosine);
-    s.clearance = surfaceEpsilon(largestCoordinates(c.a, c.b, c.c), s.distance) / std::fabs(cosine);
+    s.clearance = surfaceEpsilon(largestCoordinates(c.a, c.b, c.c), s.distance) / std::fabs(glm::dot(normal, s.wi));
     return s;
+}
+
+float AreaLight::pdfToward(Vec3 p, uint32_t triangle, Vec3 wi, float distance) const {
+    const Corners c = corners(*mesh, triangle);
+    if (const auto seen = SphericalTriangle::seen(c.a - p, c.b - p, c.c - p))
+        return triangles.pmf(triangle) / seen->solidAngle();
+    const float cosine = std::fabs(glm::dot(glm::normalize(scaledNormal(c)), wi));
+    return cosine > 0 ? pdfA(triangle) * square(distance) / cosine : 0;
 }
 
 EmissionPoint AreaLight::samplePoint(Vec2 u, float uSide) const {

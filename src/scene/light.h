@@ -47,7 +47,11 @@ struct AreaLight {
     Rgb radiance(uint32_t triangle, float u, float v) const;  // on an emitting side
     // Density per area of choosing a point of this triangle.
     float pdfA(uint32_t triangle) const { return triangles.pmf(triangle) / areas[triangle]; }
+    // Chooses a triangle as above, then a direction evenly by its solid angle, or a point by area where it is too small
+    // for that.
     LightSample sampleToward(Vec3 p, Vec2 u) const;
+    // Density (1/sr) of sampleToward for the point of the triangle that lies at `distance` (m) in direction wi (unit).
+    float pdfToward(Vec3 p, uint32_t triangle, Vec3 wi, float distance) const;
     EmissionPoint samplePoint(Vec2 u, float uSide) const;
 };
 

@@ -30,12 +30,11 @@ DirectLight sampleDirectLight(const Scene& scene, const LightChoice& lights, con
     return out;
 }
 
-float directLightPdf(const Scene& scene, const LightChoice& lights, const Surface& hit, Vec3 wi, float distance) {
+float directLightPdf(const Scene& scene, const LightChoice& lights, Vec3 from, const Surface& hit, Vec3 wi,
+                     float distance) {
     const auto index = static_cast<size_t>(scene.meshes()[hit.mesh].light);
     const auto& area = std::get<AreaLight>(scene.lights()[index].shape);
-    const float cosine = std::fabs(glm::dot(hit.ng, wi));
-    if (!(cosine > 0)) return 0;
-    return lights.probability(index) * area.pdfA(hit.triangle) * square(distance) / cosine;
+    return lights.probability(index) * area.pdfToward(from, hit.triangle, wi, distance);
 }
 
 }  // namespace lsde

@@ -23,8 +23,9 @@ struct DirectLightQuery {
 DirectLight sampleDirectLight(const Scene& scene, const LightChoice& lights, const Vertex& vertex,
                               const DirectLightQuery& query, float uLight, Vec2 u, WalkScratch& scratch);
 
-// Density (1/sr) with which sampleDirectLight() by this choice would have drawn the emitting point `hit`, seen at
-// `distance` in direction wi.
-float directLightPdf(const Scene& scene, const LightChoice& lights, const Surface& hit, Vec3 wi, float distance);
+// Density (1/sr) with which sampleDirectLight() by this choice would have drawn the emitting point `hit`, seen from the
+// vertex at `from` at `distance` in direction wi.
+float directLightPdf(const Scene& scene, const LightChoice& lights, Vec3 from, const Surface& hit, Vec3 wi,
+                     float distance);
 
 }  // namespace lsde

@@ -99,13 +99,21 @@ TEST_CASE("points on a light have the density that they claim, from samplePoint 
     Random random(2);
     CHECK(chiSquaredOnSquare(
               grid, [&] { return std::optional(Vec2(light.samplePoint(random.uniform2D(), 0.7F).position)); }, density)
-              .accepted(2));
-    const Vec3 p(0.2F, 0.3F, 0.7F);
-    const auto towards = [&] {
-        const LightSample s = light.sampleToward(p, random.uniform2D());
-        return std::optional(Vec2(p + s.distance * s.wi));
-    };
-    CHECK(chiSquaredOnSquare(grid, towards, density).accepted(2));
+              .accepted(3));
+    // From near by solid angle, from far away by area.
+    for (const Vec3 p : {Vec3(0.2F, 0.3F, 0.7F), Vec3(3, -20, 100)}) {
+        const auto towards = [&] {
+            const LightSample s = light.sampleToward(p, random.uniform2D());
+            return std::optional(Vec2(p + s.distance * s.wi));
+        };
+        const auto seen = [&](double x, double y) {
+            const int t = inside(x, y);
+            const Vec3 d = Vec3(x, y, 0) - p, wi = glm::normalize(d);
+            const float perArea = std::fabs(wi.z) / glm::dot(d, d);
+            return t < 0 ? 0.0 : light.pdfToward(p, static_cast<uint32_t>(t), wi, glm::length(d)) * perArea;
+        };
+        CHECK(chiSquaredOnSquare(grid, towards, seen).accepted(3));
+    }
 }
 
 TEST_CASE("the mean of one over the density is the solid angle of the light, and nothing is sampled behind it") {

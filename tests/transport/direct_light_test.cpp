@@ -131,8 +131,8 @@ TEST_CASE("a lamp a millimetre away fills the hemisphere") {
         if (scatter(v, sample, Quantity::Radiance, next) && advance(*scene, next, hit, scratch) &&
             scene->meshes()[hit.surface.mesh].light >= 0)
             sum += next.throughput.x * scene->emission(hit.surface, hit.woWorld).x *
-                   powerHeuristic(sample.pdfW, directLightPdf(*scene, lights.at(litPlace(v)), hit.surface, hit.woWorld,
-                                                              hit.distance));
+                   powerHeuristic(sample.pdfW, directLightPdf(*scene, lights.at(litPlace(v)), v.surface.position,
+                                                              hit.surface, -hit.woWorld, hit.distance));
         radiance.add(sum);
     }
     CHECK(radiance.agrees(kAlbedo * kRadiance.x, 5));
@@ -250,9 +250,10 @@ TEST_CASE("sampled lights and sampled directions, weighted, add up to sampled li
                 if (sampleBsdf(v.bsdf, v.wo, uLobe, random.uniform2D(), sample) &&
                     scatter(v, sample, Quantity::Radiance, next) && advance(*scene, next, hit, scratch) &&
                     scene->meshes()[hit.surface.mesh].light >= 0)
-                    sum += next.throughput.x * scene->emission(hit.surface, hit.woWorld).x *
-                           powerHeuristic(sample.pdfW, directLightPdf(*scene, lights.at(litPlace(v)), hit.surface,
-                                                                      hit.woWorld, hit.distance));
+                    sum +=
+                        next.throughput.x * scene->emission(hit.surface, hit.woWorld).x *
+                        powerHeuristic(sample.pdfW, directLightPdf(*scene, lights.at(litPlace(v)), v.surface.position,
+                                                                   hit.surface, -hit.woWorld, hit.distance));
                 both.add(sum);
             }
             CHECK(test::agree(alone, both));
@@ -274,13 +275,13 @@ TEST_CASE("the density told for a point of a lamp is the one it is sampled with"
     const auto pdfOf = [&](Vec3 onLamp, Hit& hit) {
         const Ray ray{p + Vec3(0, 1e-4F, 0), glm::normalize(onLamp - p), kInfinity};
         return scene->accel().intersect(ray, hit) && hit.mesh == 1
-                   ? directLightPdf(*scene, lights.at(litPlace(v)), scene->surface(hit), ray.direction,
-                                    glm::length(onLamp - p))
+                   ? directLightPdf(*scene, lights.at(litPlace(v)), v.surface.position, scene->surface(hit),
+                                    ray.direction, glm::length(onLamp - p))
                    : 0.0F;
     };
     test::Random random(14);
     const auto result = test::chiSquaredOnSquare(
-        {16, 16, 1, 100'000},
+        {16, 16, 16, 100'000},
         [&]() -> std::optional<Vec2> {
             float uLight = random.uniform();
             const size_t light = lights.at(litPlace(v)).choose(uLight);
@@ -289,7 +290,8 @@ TEST_CASE("the density told for a point of a lamp is the one it is sampled with"
             const Vec3 q = p + s.distance * s.wi;
             Hit hit;
             const float pdf = pdfOf(q, hit);
-            if (pdf > 0)
+            // On an edge the ray may meet the neighbour.
+            if (pdf > 0 && std::min({hit.u, hit.v, 1 - hit.u - hit.v}) > 1e-4F)
                 CHECK(pdf == doctest::Approx(s.pdfW * lights.at(litPlace(v)).probability(light)).epsilon(1e-3));
             return 0.5F * Vec2(q.x + 1, q.z + 1);
         },
