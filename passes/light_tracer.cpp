@@ -117,7 +117,8 @@ class LightTracer {
         if (!info.receiver || !holds(in_.store, c)) return;
         Photon photon;
         photon.position = v.surface.position;
-        photon.power = path.state.throughput;
+        // It lands by chance of what is covered, and only there is it gathered: on so much less area.
+        photon.power = path.state.throughput / in_.scene.coverage(v.surface);
         photon.direction = v.woWorld;
         photon.ng = v.surface.ng;
         photon.light = static_cast<uint16_t>(light_);

@@ -82,6 +82,10 @@ void add(Hasher& h, const Material& m) {
         h.value(m.volume->attenuationDistance);
     }
     for (const TextureRef* r : m.textures()) add(h, *r);
+    if (m.alphaMode == AlphaMode::Opaque) return;
+    h.value(m.alphaMode);
+    h.value(m.alpha);
+    h.value(m.alphaCutoff);
 }
 
 void add(Hasher& h, const Texture& t) {

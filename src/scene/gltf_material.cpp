@@ -42,7 +42,9 @@ TextureRef readTexture(const JsonObject& root, const JsonObject& object, const c
 }
 
 void readMetallicRoughness(const JsonObject& root, const JsonObject& pbr, Material& m) {
-    m.baseColor = toRgb(pbr.numbers("baseColorFactor", 4, {1, 1, 1, 1}, kUnitInterval));
+    const std::vector<double> baseColor = pbr.numbers("baseColorFactor", 4, {1, 1, 1, 1}, kUnitInterval);
+    m.baseColor = toRgb(baseColor);
+    m.alpha = static_cast<float>(baseColor[3]);
     m.baseColorTexture = readTexture(root, pbr, "baseColorTexture");
     m.metallic = factor(pbr, "metallicFactor", 1);
     m.roughness = factor(pbr, "roughnessFactor", 1);
@@ -101,12 +103,25 @@ void readEmission(const JsonObject& root, const JsonObject& object, Material& m)
     m.emissiveTexture = readTexture(root, object, "emissiveTexture");
 }
 
+void readAlpha(const JsonObject& object, Material& m, Warnings& warnings) {
+    const std::string mode = object.has("alphaMode") ? object.string("alphaMode") : "OPAQUE";
+    if (mode == "MASK")
+        m.alphaMode = AlphaMode::Mask;
+    else if (mode == "BLEND")
+        m.alphaMode = AlphaMode::Blend;
+    else if (mode != "OPAQUE")
+        object.fail(fmt::format("alphaMode {}, expected OPAQUE, MASK or BLEND", shown(mode)));
+    m.alphaCutoff = factor(object, "alphaCutoff", 0.5, kNotNegative);
+    // Many exporters write glass so.
+    constexpr float kMostlyOpen = 0.5F;
+    if (m.alphaMode == AlphaMode::Blend && m.alpha < kMostlyOpen && !(m.transmission > 0))
+        warnings.add(
+            "alphaMode BLEND with little alpha is not glass: light passes it unbent (glass has "
+            "KHR_materials_transmission)",
+            object.where());
+}
+
 void warnOfIgnored(const JsonObject& object, Warnings& warnings) {
-    const std::string alpha = object.has("alphaMode") ? object.string("alphaMode") : "OPAQUE";
-    if (alpha != "OPAQUE" && alpha != "MASK" && alpha != "BLEND")
-        object.fail(fmt::format("alphaMode {}, expected OPAQUE, MASK or BLEND", shown(alpha)));
-    object.number("alphaCutoff", 0.5, kNotNegative);
-    if (alpha != "OPAQUE") warnings.add(fmt::format("alphaMode {} is rendered opaque", alpha), object.where());
     if (object.has("normalTexture")) warnings.add("normal textures are not rendered yet", object.where());
 }
 
@@ -119,6 +134,7 @@ GltfMaterial readMaterial(const JsonObject& root, const JsonObject& object, Warn
     readSpecular(root, object, m);
     readTransmission(root, object, m, warnings);
     readEmission(root, object, m);
+    readAlpha(object, m, warnings);
     warnOfIgnored(object, warnings);
     out.priority = readPriority(object);
     return out;

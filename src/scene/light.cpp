@@ -2,6 +2,7 @@
 
 #include "sampling/spherical_triangle.h"
 #include "sampling/warp.h"
+#include "scene/coverage.h"
 
 namespace lsde {
 
@@ -26,29 +27,34 @@ Vec2 barycentric(const Corners& c, Vec3 p) {
             glm::dot(glm::cross(c.b - c.a, p - c.a), n) * inverse};
 }
 
+// Whether all of it emits alike.
+bool isEven(const AreaLight& light) {
+    return !light.material->emissiveTexture && light.material->alphaMode == AlphaMode::Opaque;
+}
+
 // Mean luminance of a triangle's emission: the factor, times the texture's mean over a fixed grid of points.
 double meanLuminance(const AreaLight& light, uint32_t triangle) {
-    if (!light.material->emissiveTexture) return luminance(light.material->emission);
+    if (isEven(light)) return luminance(light.material->emission);
     constexpr int kGrid = 8;
     double sum = 0;
     int count = 0;
     for (int i = 0; i < kGrid; ++i)
         for (int j = 0; i + j < kGrid; ++j, ++count)
-            sum += luminance(light.radiance(triangle, (static_cast<float>(i) + 1.0F / 3) / kGrid,
-                                            (static_cast<float>(j) + 1.0F / 3) / kGrid));
+            sum += luminance(light.emitted(triangle, (static_cast<float>(i) + 1.0F / 3) / kGrid,
+                                           (static_cast<float>(j) + 1.0F / 3) / kGrid));
     // A texture that is black at all of these points may still shine between them: a floor keeps it in the sample.
     return sum / count + 0.01 * luminance(light.material->emission);
 }
 
 Rgb meanRadiance(const AreaLight& light, uint32_t triangle) {
-    if (!light.material->emissiveTexture) return light.material->emission;
+    if (isEven(light)) return light.material->emission;
     constexpr int kGrid = 32;
     Rgb sum(0);
     int count = 0;
     for (int i = 0; i < kGrid; ++i)
         for (int j = 0; i + j < kGrid; ++j, ++count)
-            sum += light.radiance(triangle, (static_cast<float>(i) + 1.0F / 3) / kGrid,
-                                  (static_cast<float>(j) + 1.0F / 3) / kGrid);
+            sum += light.emitted(triangle, (static_cast<float>(i) + 1.0F / 3) / kGrid,
+                                 (static_cast<float>(j) + 1.0F / 3) / kGrid);
     return sum / static_cast<float>(count);
 }
 
@@ -73,11 +79,12 @@ Rgb AreaLight::radiance(uint32_t triangle, float u, float v) const {
     if (!ref) return material->emission;
     const auto& uvs = mesh->texCoords[ref.texCoord];
     Vec2 uv(0);
-    if (!uvs.empty()) {
-        const Triangle& t = mesh->triangles[triangle];
-        uv = (1 - u - v) * uvs[t[0]] + u * uvs[t[1]] + v * uvs[t[2]];
-    }
+    if (!uvs.empty()) uv = interpolated(uvs, mesh->triangles[triangle], u, v);
     return material->emission * Vec3((*textures)[static_cast<size_t>(ref.texture)].sample(ref.transform(uv), true));
+}
+
+Rgb AreaLight::emitted(uint32_t triangle, float u, float v) const {
+    return radiance(triangle, u, v) * coverage(*mesh, *material, *textures, triangle, u, v);
 }
 
 LightSample AreaLight::sampleToward(Vec3 p, Vec2 u) const {
@@ -101,7 +108,7 @@ LightSample AreaLight::sampleToward(Vec3 p, Vec2 u) const {
         s.pdfW = pdfA(t) * square(s.distance) / std::fabs(glm::dot(normal, s.wi));
     }
     if (!(s.distance > 0)) return {};
-    s.radiance = radiance(t, b.x, b.y);
+    s.radiance = emitted(t, b.x, b.y);
     s.clearance = surfaceEpsilon(largestCoordinates(c.a, c.b, c.c), s.distance) / std::fabs(glm::dot(normal, s.wi));
     return s;
 }
@@ -121,7 +128,7 @@ EmissionPoint AreaLight::samplePoint(Vec2 u, float uSide) const {
     EmissionPoint e;
     e.position = (1 - b.x - b.y) * c.a + b.x * c.b + b.y * c.c;
     e.normal = glm::normalize(scaledNormal(c));
-    e.radiance = radiance(t, b.x, b.y);
+    e.radiance = emitted(t, b.x, b.y);
     e.pdfA = pdfA(t);
     e.epsilon = surfaceEpsilon(largestCoordinates(c.a, c.b, c.c), 0);
     if (twoSided) {

@@ -44,7 +44,8 @@ struct AreaLight {
     Bounds bounds;
 
     AreaLight(const Mesh& mesh, const Material& material, const std::vector<Texture>& textures);
-    Rgb radiance(uint32_t triangle, float u, float v) const;  // on an emitting side
+    Rgb radiance(uint32_t triangle, float u, float v) const;  // of what is there, on an emitting side
+    Rgb emitted(uint32_t triangle, float u, float v) const;   // radiance times how much is there (coverage.h)
     // Density per area of choosing a point of this triangle.
     float pdfA(uint32_t triangle) const { return triangles.pmf(triangle) / areas[triangle]; }
     // Chooses a triangle as above, then a direction evenly by its solid angle, or a point by area where it is too small

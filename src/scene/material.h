@@ -16,9 +16,16 @@ struct VolumeProperties {
     float attenuationDistance = kInfinity;  // m
 };
 
+// Whether alpha counts (glTF 2.0, section 3.9.4), by coverage.h.
+enum class AlphaMode : uint8_t { Opaque, Mask, Blend };
+
 struct Material {
     std::string name;
     bool doubleSided = false;
+
+    AlphaMode alphaMode = AlphaMode::Opaque;
+    float alpha = 1;           // of baseColorFactor
+    float alphaCutoff = 0.5F;  // Mask: covers from this alpha on
 
     Rgb baseColor{1};  // linear
     TextureRef baseColorTexture;

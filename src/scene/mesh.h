@@ -13,6 +13,12 @@ namespace lsde {
 
 using Triangle = std::array<uint32_t, 3>;
 
+// A vertex attribute within a triangle, at the barycentric weights u, v of its second and third vertex.
+template <typename T>
+T interpolated(const std::vector<T>& values, const Triangle& t, float u, float v) {
+    return (1 - u - v) * values[t[0]] + u * values[t[1]] + v * values[t[2]];
+}
+
 // extras.lsde of a node.
 struct CausticSwitches {
     bool casts = true;     // castsCaustics

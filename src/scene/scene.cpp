@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "path/event.h"
+#include "scene/coverage.h"
 
 namespace lsde {
 
@@ -31,7 +32,9 @@ bool hasNarrowLobe(const Material& m) {
 }  // namespace
 
 Scene::Scene(SceneDescription description)
-    : description_(std::move(description)), accel_(description_.meshes), hash_(hashDescription(description_)) {
+    : description_(std::move(description)),
+      accel_(description_.meshes, partialCoverage()),
+      hash_(hashDescription(description_)) {
     std::map<std::string, uint32_t> objectIndex;
     for (const Mesh& mesh : description_.meshes) {
         MeshInfo info;
@@ -55,6 +58,19 @@ Scene::Scene(SceneDescription description)
     buildMedia();
     buildLights();
     buildCasters();
+}
+
+PartialCoverage Scene::partialCoverage() const {
+    PartialCoverage out;
+    for (const Mesh& mesh : description_.meshes)
+        out.partial.push_back(coversPartly(mesh, description_.materials[mesh.material], description_.textures));
+    out.at = [this](const Hit& hit) { return coverageAt(hit.mesh, hit.triangle, hit.u, hit.v); };
+    return out;
+}
+
+float Scene::coverageAt(uint32_t mesh, uint32_t triangle, float u, float v) const {
+    const Mesh& m = description_.meshes[mesh];
+    return lsde::coverage(m, description_.materials[m.material], description_.textures, triangle, u, v);
 }
 
 void Scene::buildLights() {
@@ -127,15 +143,13 @@ Vec2 Scene::texCoord(const Surface& s, int set) const {
     const Mesh& mesh = description_.meshes[s.mesh];
     const auto& uvs = mesh.texCoords[set];
     if (uvs.empty()) return Vec2(0);
-    const Triangle& t = mesh.triangles[s.triangle];
-    return (1 - s.u - s.v) * uvs[t[0]] + s.u * uvs[t[1]] + s.v * uvs[t[2]];
+    return interpolated(uvs, mesh.triangles[s.triangle], s.u, s.v);
 }
 
 Rgb Scene::vertexColor(const Surface& s) const {
     const Mesh& mesh = description_.meshes[s.mesh];
     if (mesh.colors.empty()) return Rgb(1);
-    const Triangle& t = mesh.triangles[s.triangle];
-    return Rgb((1 - s.u - s.v) * mesh.colors[t[0]] + s.u * mesh.colors[t[1]] + s.v * mesh.colors[t[2]]);
+    return Rgb(interpolated(mesh.colors, mesh.triangles[s.triangle], s.u, s.v));
 }
 
 Vec4 Scene::sample(const Surface& s, const TextureRef& ref, bool srgb) const {

@@ -61,6 +61,10 @@ class Scene {
     const Material& material(const Surface& s) const {
         return description_.materials[description_.meshes[s.mesh].material];
     }
+    // Share of the area about the point that the surface covers (coverage.h): more than 0 wherever a ray met it.
+    float coverage(const Surface& s) const {
+        return material(s).alphaMode == AlphaMode::Opaque ? 1 : coverageAt(s.mesh, s.triangle, s.u, s.v);
+    }
     // Front and back: refractive indices on either side of the interface, where the surface bounds a solid.
     Bsdf bsdf(const Surface& s, float iorFront, float iorBack) const;
     // Radiance emitted into direction `leaving` (unit, away from the surface).
@@ -76,6 +80,8 @@ class Scene {
     CameraDescription camera(const std::string& name) const;
 
   private:
+    PartialCoverage partialCoverage() const;
+    float coverageAt(uint32_t mesh, uint32_t triangle, float u, float v) const;
     void buildMedia();
     void findTouching();
     void buildLights();

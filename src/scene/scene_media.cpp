@@ -142,7 +142,7 @@ void Scene::coincidentSurfaces(const Surface& s, float distance, std::vector<Hit
     const Ray probe{s.position + distance * s.ng, -s.ng, 2 * distance};
     accel_.allHits(probe, out);
     std::erase_if(out, [&](const Hit& h) {
-        return meshes_[h.mesh].medium == meshes_[s.mesh].medium ||
+        return meshes_[h.mesh].medium == meshes_[s.mesh].medium || !accel_.isThere(probe, h) ||
                description_.materials[description_.meshes[h.mesh].material].isThinWall();
     });
 }

@@ -135,8 +135,8 @@ Visibility visibility(const Scene& scene, const Vertex& from, Vec3 wi, float dis
     Visibility v;
     if (!scene.hasThinWalls()) {
         ++scratch.rays;
-        if (scene.accel().occluded(ray)) return v;
-        v.transmittance = Rgb(1);
+        v.transmittance = Rgb(scene.accel().transmittance(ray, scratch.hits));
+        if (isBlack(v.transmittance)) return v;
     } else {
         Rgb tint(1);
         Hit hit;

@@ -38,6 +38,8 @@ TEST_CASE("a material without properties has the specification's defaults, and s
         CHECK(!m.volume);
         CHECK(!m.emissive());
         CHECK(!m.doubleSided);
+        CHECK(m.alphaMode == AlphaMode::Opaque);
+        CHECK(m.alphaCutoff == 0.5F);
     }
     GltfFile both = triangleFileWith({{"name", "own"}});
     both.add("meshes", triangleFile()["/meshes/0"]);
@@ -53,8 +55,10 @@ TEST_CASE("every property of a material is read") {
         materialOf({{"name", "all"},
                     {"doubleSided", true},
                     {"emissiveFactor", {0.5, 0.25, 1}},
+                    {"alphaMode", "MASK"},
+                    {"alphaCutoff", 0.75},
                     {"pbrMetallicRoughness",
-                     {{"baseColorFactor", {0.1, 0.2, 0.3, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 0}}},
+                     {{"baseColorFactor", {0.1, 0.2, 0.3, 0.875}}, {"metallicFactor", 0}, {"roughnessFactor", 0}}},
                     {"extensions",
                      {{"KHR_materials_emissive_strength", {{"emissiveStrength", 8}}},
                       {"KHR_materials_ior", {{"ior", 1.33}}},
@@ -66,6 +70,9 @@ TEST_CASE("every property of a material is read") {
     CHECK(m.doubleSided);
     CHECK(m.emission == Rgb(4, 2, 8));
     CHECK(m.baseColor == Rgb(0.1F, 0.2F, 0.3F));
+    CHECK(m.alphaMode == AlphaMode::Mask);
+    CHECK(m.alpha == 0.875F);
+    CHECK(m.alphaCutoff == 0.75F);
     CHECK(m.metallic == 0);
     CHECK(m.roughness == 0);
     CHECK(m.ior == 1.33F);
@@ -135,15 +142,19 @@ TEST_CASE("what is rendered otherwise than the file says gets one warning, with 
     rough["extensions"]["KHR_materials_transmission"]["transmissionFactor"] = 0.5;
     CHECK(warned(rough, "partial transmission is rendered as transmission 1"));
     CHECK(warned(withExtension("transmission", {{"transmissionFactor", 1}}), "transmission has no effect on a metal"));
-    CHECK(warned({{"alphaMode", "BLEND"}}, "alphaMode BLEND is rendered opaque"));
+    const Json gauze = {{"alphaMode", "BLEND"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 0.1}}}}};
+    CHECK(warned(gauze, "material 0: alphaMode BLEND with little alpha is not glass"));
+    CHECK(load(triangleFileWith({{"alphaMode", "BLEND"}})).warnings.empty());
     GltfFile file = triangleFile();
     file.json["extensionsUsed"] = {"KHR_materials_unlit", "KHR_materials_sheen", "KHR_materials_volume"};
-    file.json["materials"] = {{{"alphaMode", "MASK"}}, {{"alphaMode", "MASK"}}, {{"alphaMode", "MASK"}}};
+    file.json["materials"] = {gauze, gauze, gauze};
     file.json["animations"] = {Json::object()};
     const SceneDescription scene = load(file);
     CHECK(scene.warnings.size() == 4);
     CHECK(warnsOnce(scene, "scene.gltf: extension \"KHR_materials_unlit\" is ignored"));
     CHECK(warnsOnce(scene, "extension \"KHR_materials_sheen\" is ignored"));
-    CHECK(warnsOnce(scene, "material 0: alphaMode MASK is rendered opaque (3 in all)"));
+    CHECK(warnsOnce(scene,
+                    "material 0: alphaMode BLEND with little alpha is not glass: light passes it unbent (glass "
+                    "has KHR_materials_transmission) (3 in all)"));
     CHECK(warnsOnce(scene, "animations are not rendered"));
 }

@@ -297,6 +297,16 @@ TEST_CASE("the hash changes with all that light depends on") {
         [](SceneDescription& d) { d.materials[0].specularColorTexture.texture = 0; },
         [](SceneDescription& d) { d.materials[0].transmissionTexture.texture = 0; },
         [](SceneDescription& d) { d.materials[0].emissiveTexture.texture = 0; },
+        [](SceneDescription& d) { d.materials[0].alphaMode = AlphaMode::Blend; },
+        [](SceneDescription& d) { d.materials[0].alphaMode = AlphaMode::Mask; },
+        [](SceneDescription& d) {
+            d.materials[0].alphaMode = AlphaMode::Blend;
+            d.materials[0].alpha = 0.5F;
+        },
+        [](SceneDescription& d) {
+            d.materials[0].alphaMode = AlphaMode::Mask;
+            d.materials[0].alphaCutoff = 0.4F;
+        },
         [](SceneDescription& d) { d.materials[0].emissiveTexture.texCoord = 1; },
         [](SceneDescription& d) { d.materials[0].emissiveTexture.matrix.y = 1; },
         [](SceneDescription& d) { d.materials[0].emissiveTexture.offset.y = 1; },
