@@ -1,5 +1,4 @@
-// Loads glTF 2.0 (.gltf, .glb). gltf.cpp is the one file that includes tinygltf; it sees only what gltf_validate
-// passed.
+// Loads glTF 2.0 (.gltf, .glb): validates, reads, decodes, places.
 #pragma once
 
 #include <functional>

@@ -5,24 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "scene/gltf_accessor.h"
+#include "scene/gltf_model.h"
 #include "scene/mesh_builder.h"
 #include "scene/warnings.h"
 
 namespace lsde {
-
-struct GltfPrimitive {
-    int mode = 4;                           // 0-3: points and lines; 4-6: PrimitiveMode
-    int indices = -1;                       // accessor; -1: vertices in their order
-    int material = -1;                      // -1: the default material
-    std::map<std::string, int> attributes;  // accessor of each
-};
-
-// The binary part of a file, as its JSON describes it.
-struct GltfModel {
-    std::vector<GltfAccessor> accessors;
-    std::vector<std::vector<GltfPrimitive>> meshes;
-};
 
 // A primitive that makes triangles, and its material.
 struct LoadedPrimitive {
