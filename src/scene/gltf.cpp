@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "scene/gltf_attachments.h"
+#include "scene/gltf_compression.h"
 #include "scene/gltf_geometry.h"
 #include "scene/gltf_material.h"
 #include "scene/gltf_model.h"
@@ -21,9 +22,10 @@ namespace {
 SceneDescription load(const std::filesystem::path& file, const GltfOptions& options, Warnings& warnings) {
     const std::string name = file.string();
     GltfSource source = readGltfSource(file, warnings);
-    const Json json = validateGltf(file, source, options.allowOutside, warnings);
+    Json json = validateGltf(file, source, options.allowOutside, warnings);
     source.json = {};
     const JsonObject root(json, "", name);
+    const GltfResources resources{root, file.parent_path(), options.allowOutside};
 
     SceneDescription scene;
     scene.file = file;
@@ -36,8 +38,9 @@ SceneDescription load(const std::filesystem::path& file, const GltfOptions& opti
     scene.cameras = placeCameras(attachments, root, placed);
     scene.lights = placeLights(attachments, root, placed);
 
-    const GltfResources resources{root, file.parent_path(), options.allowOutside};
-    const GltfModel model = parseModel(root, readBuffers(resources, source));
+    GltfBuffers buffers = readBuffers(resources, source);
+    decodeCompressed(json, name, buffers);
+    const GltfModel model = parseModel(root, std::move(buffers));
     GeometryLoader geometry(name, model, warnings);
     placeMeshes(root, placed, materials, geometry, scene, warnings);
     if (scene.meshes.empty()) root.fail(fmt::format("scene {}: no triangles to render", index));

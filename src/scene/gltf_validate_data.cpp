@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "scene/gltf_compression.h"
 #include "scene/gltf_limits.h"
 #include "scene/gltf_uri.h"
 #include "scene/gltf_validate_parts.h"
@@ -61,6 +62,17 @@ void checkWithin(const GltfChecks& checks, const JsonObject& object, const Acces
                                 alignment));
 }
 
+// Whether the view's data are there, as such or compressed.
+bool hasData(const GltfChecks& checks, const JsonObject& view, size_t buffer) {
+    const auto meshopt = readMeshoptView(view, checks.buffers.size());
+    if (checks.buffers[buffer].hasData || !meshopt) return checks.buffers[buffer].hasData;
+    const BufferInfo& compressed = checks.buffers[meshopt->buffer];
+    if (meshopt->offset + meshopt->bytes > compressed.bytes)
+        view.fail(fmt::format("{}: bytes {} to {}, but buffer {} has {} bytes", kMeshopt, meshopt->offset,
+                              meshopt->offset + meshopt->bytes, meshopt->buffer, compressed.bytes));
+    return compressed.hasData;
+}
+
 // One of the two parts of a sparse accessor: as an accessor of its own. Returns whether its buffer has data.
 bool checkSparsePart(const GltfChecks& checks, const JsonObject& part, AccessorInfo a) {
     part.require("bufferView");
@@ -70,7 +82,7 @@ bool checkSparsePart(const GltfChecks& checks, const JsonObject& part, AccessorI
     if (view.stride != 0)
         part.fail(fmt::format("byteStride {} of its buffer view, expected none for sparse data", view.stride));
     checkWithin(checks, part, a, elementBytes(a.type, a.componentType));
-    return checks.buffers[view.buffer].hasData;
+    return view.hasData;
 }
 
 void checkSparse(const GltfChecks& checks, const JsonObject& sparse, AccessorInfo& accessor) {
@@ -105,7 +117,7 @@ AccessorInfo checkAccessor(const GltfChecks& checks, const JsonObject& object) {
     a.view = object.reference("bufferView", "buffer view", checks.views.size());
     if (a.view) {
         checkWithin(checks, object, a, bytes);
-        a.hasData = checks.buffers[checks.views[*a.view].buffer].hasData;
+        a.hasData = checks.views[*a.view].hasData;
     } else if (a.offset != 0) {
         object.fail("byteOffset without bufferView");
     } else if (a.count > kMaxBareElements) {
@@ -168,6 +180,7 @@ void checkBufferViews(GltfChecks& checks) {
                                     view.buffer, there));
         if (view.stride > view.bytes)
             object.fail(fmt::format("byteStride {}, but it has {} bytes", view.stride, view.bytes));
+        view.hasData = hasData(checks, object, view.buffer);
         checks.views.push_back(view);
     }
 }

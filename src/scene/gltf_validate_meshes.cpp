@@ -2,9 +2,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <string_view>
 
+#include "scene/gltf_compression.h"
 #include "scene/gltf_validate_parts.h"
 
 namespace lsde {
@@ -44,11 +46,8 @@ std::string wrongFormat(std::string_view semantic, const AccessorInfo& a, bool q
 }
 
 void checkHasData(const GltfChecks& checks, const JsonObject& primitive, size_t accessor) {
-    if (checks.accessors[accessor].hasData) return;
-    const bool compressed = checks.uses("EXT_meshopt_compression") || checks.uses("KHR_meshopt_compression");
-    primitive.fail(
-        fmt::format("accessor {} is in a buffer without data{}", accessor,
-                    compressed ? " (meshopt compression is not supported yet)" : ", expected a uri or a BIN chunk"));
+    if (!checks.accessors[accessor].hasData)
+        primitive.fail(fmt::format("accessor {} is in a buffer without data, expected a uri or a BIN chunk", accessor));
 }
 
 // Attributes by name. Counts must be equal; formats are checked of those that are read.
@@ -72,25 +71,37 @@ std::map<std::string, size_t> checkAttributes(const GltfChecks& checks, const Js
     return attributes;
 }
 
-void checkIndices(const GltfChecks& checks, const JsonObject& primitive, size_t index) {
+void checkIndices(const GltfChecks& checks, const JsonObject& primitive, size_t index, bool compressed) {
     const AccessorInfo& a = checks.accessors[index];
     if (a.type != "SCALAR" || !isIndexType(a.componentType) || a.normalized)
         primitive.fail(
             fmt::format("indices: accessor {} is {} of componentType {}, expected SCALAR of 5121, 5123 or 5125", index,
                         a.type, a.componentType));
+    if (!a.view && compressed) return;
     if (!a.view) primitive.fail(fmt::format("indices: accessor {} has no buffer view", index));
     if (checks.views[*a.view].stride != 0)
         primitive.fail(fmt::format("indices: buffer view {} has a byteStride, expected none for indices", *a.view));
     checkHasData(checks, primitive, index);
 }
 
-// Geometry that is there in compressed form alone would load as nothing.
-void checkNotDracoOnly(const GltfChecks& checks, const JsonObject& primitive,
-                       const std::map<std::string, size_t>& attributes) {
-    if (!primitive.extension("KHR_draco_mesh_compression")) return;
-    const auto position = attributes.find("POSITION");
-    if (position == attributes.end() || !checks.accessors[position->second].view)
-        primitive.fail("its vertices are there by KHR_draco_mesh_compression only, which is not supported yet");
+// Of what is there in Draco's form alone: that it is there, and names what it holds.
+void checkDraco(const GltfChecks& checks, const JsonObject& primitive, const JsonObject& draco) {
+    for (const char* key : {"bufferView", "attributes"}) draco.require(key);
+    const size_t view = draco.reference("bufferView", "buffer view", checks.views.size()).value();
+    if (!checks.views[view].hasData) draco.fail(fmt::format("{}: buffer view {} has no data", kDraco, view));
+    if (const int64_t mode = primitive.integer("mode", 4, 0, 6); mode != 4 && mode != 5)
+        draco.fail(fmt::format("{}: mode {}, expected 4 or 5", kDraco, mode));
+    const JsonObject attributes = primitive.object("attributes").value(), ids = draco.object("attributes").value();
+    if (!ids.has("POSITION")) ids.fail("no POSITION");
+    for (const auto& [name, id] : ids.json().items()) {
+        ids.integer(name.c_str(), 0, 0, std::numeric_limits<uint32_t>::max());
+        if (!attributes.has(name.c_str()))
+            ids.fail(fmt::format("{} is not among the primitive's attributes", shown(name)));
+        const AccessorInfo& a =
+            checks.accessors[attributes.reference(name.c_str(), "accessor", checks.accessors.size()).value()];
+        if (a.type != "SCALAR" && !a.type.starts_with("VEC"))
+            ids.fail(fmt::format("{}: accessor of type {}", shown(name), a.type));
+    }
 }
 
 // Which accessors use a buffer view for vertices: with more than one, the view must say its stride (section 3.6.2.1).
@@ -113,10 +124,11 @@ void checkPrimitive(const GltfChecks& checks, const JsonObject& primitive, ViewU
     primitive.integer("mode", 4, 0, 6);
     primitive.reference("material", "material", checks.root.size("materials"));
     const std::map<std::string, size_t> attributes = checkAttributes(checks, primitive);
-    checkNotDracoOnly(checks, primitive, attributes);
+    const auto draco = neededDraco(checks.root, primitive);
+    if (draco) checkDraco(checks, primitive, *draco);
     checkShared(checks, primitive, attributes, users);
     if (const auto indices = primitive.reference("indices", "accessor", checks.accessors.size()))
-        checkIndices(checks, primitive, *indices);
+        checkIndices(checks, primitive, *indices, draco.has_value());
     for (const JsonObject& target : primitive.objects("targets", "target")) {
         checks.warnings.add("morph targets are not rendered", primitive.where());
         for (const auto& [name, value] : target.json().items())

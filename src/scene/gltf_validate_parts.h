@@ -21,6 +21,7 @@ struct ViewInfo {
     size_t buffer = 0;
     uint64_t offset = 0, bytes = 0;
     uint64_t stride = 0;  // 0: tightly packed
+    bool hasData = true;  // false: in a buffer without data
 };
 
 struct AccessorInfo {

@@ -24,7 +24,7 @@ void checkImage(const GltfChecks& checks, const JsonObject& image) {
     uint64_t bytes = 0;
     if (const auto index = image.reference("bufferView", "buffer view", checks.views.size())) {
         const ViewInfo& view = checks.views[*index];
-        if (!checks.buffers[view.buffer].hasData) image.fail(fmt::format("buffer {} has no data", view.buffer));
+        if (!view.hasData) image.fail(fmt::format("buffer {} has no data", view.buffer));
         bytes = view.bytes;
     } else {
         bytes = bytesBehindUri(checks, image);

@@ -139,9 +139,6 @@ TEST_CASE("every odd file of other loaders' tests loads or is refused in one lin
 TEST_CASE("odd files are refused for what is odd about them") {
     const std::map<std::string, const char*> expected = {
         {"cesium/cubeSomeBadIndices.glb", "mesh 0 primitive 0: index 26 = 15, but 8 vertices"},
-        {"gltf-transform/BoxMeshopt.glb", "extension \"EXT_meshopt_compression\" is required, but not supported"},
-        {"gltf-transform/DracoSparseMesh.gltf",
-         "extension \"KHR_draco_mesh_compression\" is required, but not supported"},
         {"magnum/mesh-invalid.gltf", "buffer 2: uri"},
         {"tinygltf/invalid-buffer-index.gltf", "buffer view 1: buffer 1 does not exist (1 buffer)"},
         {"tinygltf/invalid-buffer-view-index.gltf", "buffer view 0: buffer 0 does not exist (0 buffers)"},
@@ -177,7 +174,8 @@ TEST_CASE("odd files are refused for what is odd about them") {
         CHECK(contains(said, std::filesystem::path(name).filename().string()));
     }
     for (const char* sound : {"tinygltf/CubeImageUriMultipleSpaces.gltf", "tinygltf/zero-sized-bin-chunk-issue-440.glb",
-                              "tinygltf/unassigned-skeleton.gltf"}) {
+                              "tinygltf/unassigned-skeleton.gltf", "gltf-transform/BoxMeshopt.glb",
+                              "gltf-transform/DracoSparseMesh.gltf"}) {
         CAPTURE(sound);
         CHECK(outcomeOf(kOdd / sound).empty());
     }
