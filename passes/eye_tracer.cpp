@@ -136,6 +136,7 @@ void EyeTracer::follow(EyePath& path, EyeScratch& scratch) const {
         }
         if (!split(v, path, scratch)) return;
     }
+    addBackground(path, scratch);
 }
 
 void EyeTracer::recordFirst(const Vertex& v, SampleSums& sums) const {
@@ -147,15 +148,34 @@ void EyeTracer::recordFirst(const Vertex& v, SampleSums& sums) const {
 void EyeTracer::addEmission(const Vertex& v, const EyePath& path, EyeScratch& scratch) const {
     const int light = scene_.meshes()[v.surface.mesh].light;
     if (light < 0 || !lights_.selected(static_cast<size_t>(light))) return;
-    const Rgb radiance = scene_.emission(v.surface, v.woWorld);
+    addEmitter(
+        scene_.emission(v.surface, v.woWorld),
+        [&] {
+            return directLightPdf(scene_, lights_.at(path.place), path.place.position, v.surface, -v.woWorld,
+                                  path.travelled);
+        },
+        path, scratch);
+}
+
+// What escapes sees the lights beyond the scene.
+void EyeTracer::addBackground(const EyePath& path, EyeScratch& scratch) const {
+    const Vec3 direction = path.state.ray.direction;
+    for (const size_t light : scene_.infiniteLights()) {
+        if (!lights_.selected(light)) continue;
+        const Rgb radiance = std::get<InfiniteLight>(scene_.lights()[light].shape).radiance(direction);
+        addEmitter(
+            radiance * absorption(scene_, path.state.media, kInfinity),
+            [&] { return directLightPdf(scene_, lights_.at(path.place), light, direction); }, path, scratch);
+    }
+}
+
+template <typename PdfW>
+void EyeTracer::addEmitter(Rgb radiance, const PdfW& pdfW, const EyePath& path, EyeScratch& scratch) const {
     if (isBlack(radiance)) return;
     auto hit = path.walk.emitterHit();
     if (photons_ == nullptr) hit = path.lastDelta ? EyeWalkClass::EmitterHit::Full : EyeWalkClass::EmitterHit::Mis;
     if (hit == EyeWalkClass::EmitterHit::Dropped) return;
-    float weight = 1;
-    if (hit == EyeWalkClass::EmitterHit::Mis)
-        weight = powerHeuristic(path.misPdf, directLightPdf(scene_, lights_.at(path.place), path.place.position,
-                                                            v.surface, -v.woWorld, path.travelled));
+    const float weight = hit == EyeWalkClass::EmitterHit::Mis ? powerHeuristic(path.misPdf, pdfW()) : 1;
     scratch.sums.contribute(layers_, path.state.throughput * radiance * weight, layers_.filter().light(), path.mask);
 }
 

@@ -55,6 +55,10 @@ class EyeTracer {
     void follow(EyePath& path, EyeScratch& scratch) const;
     void recordFirst(const Vertex& v, SampleSums& sums) const;
     void addEmission(const Vertex& v, const EyePath& path, EyeScratch& scratch) const;
+    void addBackground(const EyePath& path, EyeScratch& scratch) const;
+    // pdfW: gives the density with which light sampling at the last vertex would have drawn what is seen.
+    template <typename PdfW>
+    void addEmitter(Rgb radiance, const PdfW& pdfW, const EyePath& path, EyeScratch& scratch) const;
     int lightSamples(const EyePath& path) const;  // at a vertex that the path has come to
     void addDirect(const Vertex& v, EyePath& path, EyeScratch& scratch) const;
     bool indirectFromMap(const Vertex& v) const;

@@ -9,7 +9,6 @@
 #include "image/exr.h"
 #include "passes/emit.h"
 #include "photon/map_file.h"
-#include "scene/gltf.h"
 #include "scene/scene.h"
 
 namespace lsde {
@@ -46,6 +45,7 @@ std::string show(const Watts& w) {
 const char* kindOf(const Light& light) {
     if (std::holds_alternative<AreaLight>(light.shape)) return "area";
     if (const auto* p = std::get_if<PointLight>(&light.shape)) return p->isSpot() ? "spot" : "point";
+    if (const auto* i = std::get_if<InfiniteLight>(&light.shape)) return i->surrounds() ? "environment" : "sun";
     return "directional";
 }
 
@@ -57,7 +57,8 @@ void describeLights(const Scene& scene, InfoResult& out) {
     }
     (*out.json)["lights"] = lights;
     if (scene.lights().empty())
-        out.lines.emplace_back("no lights: render needs an emissive material or a punctual light");
+        out.lines.emplace_back(
+            "no lights: render needs an emissive material, a punctual light, --sky or --environment FILE");
 }
 
 void describeCameras(const Scene& scene, InfoResult& out) {
@@ -72,11 +73,8 @@ void describeCameras(const Scene& scene, InfoResult& out) {
 }
 
 InfoResult describeScene(const std::filesystem::path& file, const InfoSettings& settings, RunContext& run) {
-    GltfOptions options;
-    options.allowOutside = settings.allowOutside;
-    options.onWarning = [&run](const std::string& warning) { run.warn(warning); };
-    const Scene scene(loadGltf(file, options));
-    for (const std::string& warning : scene.description().warnings) run.warn(warning);
+    const std::unique_ptr<Scene> loaded = loadScene(file, settings.scene, run);
+    const Scene& scene = *loaded;
     InfoResult out;
     Json& j = *out.json;
     size_t triangles = 0;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/run.h"
+#include "passes/scene_source.h"
 
 namespace lsde {
 
@@ -21,8 +22,8 @@ struct InfoResult {
 };
 
 struct InfoSettings {
-    bool verify = false;        // check every byte of a map
-    bool allowOutside = false;  // files outside the scene's folder
+    bool verify = false;  // check every byte of a map
+    SceneSettings scene;
 };
 
 // Tells scene, map and image apart by their first bytes and loads them as fully as render does. Throws Error on

@@ -19,7 +19,7 @@
 #include "passes/integrators/registry.h"
 #include "passes/progress_bar.h"
 #include "passes/render.h"
-#include "scene/gltf.h"
+#include "passes/scene_source.h"
 #include "store/file.h"
 
 namespace {
@@ -45,9 +45,25 @@ struct CommonOptions {
     std::string logLevel = "info";
     bool force = false;
     std::string json;
-    bool allowOutside = false;
-    std::string sceneName;
+    SceneSettings scene;
+    EnvironmentSettings environment;
 };
+
+void addEnvironment(CLI::App& app, CommonOptions& o) {
+    CLI::Option* file =
+        app.add_option("--environment", o.environment.file,
+                       "light from all around: an equirectangular picture of radiance (OpenEXR, Radiance .hdr)")
+            ->type_name("FILE");
+    app.add_option("--environment-rotate", o.environment.turnDeg,
+                   "turn it about the vertical; at 0 its centre lies along +Z, at 90 along +X")
+        ->needs(file)
+        ->check(CLI::Range(-3600.0, 3600.0))
+        ->type_name("DEG");
+    app.add_option("--environment-strength", o.environment.strength, "factor of its radiance")
+        ->needs(file)
+        ->check(CLI::PositiveNumber)
+        ->type_name("X");
+}
 
 void addCommon(CLI::App& app, CommonOptions& o, bool scene) {
     app.add_option("--threads", o.threads, "threads (0: all processors)")
@@ -62,9 +78,11 @@ void addCommon(CLI::App& app, CommonOptions& o, bool scene) {
     app.add_option("--json", o.json, "write the figures of the run as JSON to FILE (-: standard output)")
         ->type_name("FILE");
     if (!scene) return;
-    app.add_flag("--allow-outside", o.allowOutside, "take buffers and images from outside the scene's folder");
-    app.add_option("--scene", o.sceneName, "scene within the file, by name or index (default: the file's)")
+    app.add_flag("--allow-outside", o.scene.gltf.allowOutside,
+                 "take buffers and images from outside the scene's folder");
+    app.add_option("--scene", o.scene.gltf.scene, "scene within the file, by name or index (default: the file's)")
         ->type_name("NAME");
+    addEnvironment(app, o);
 }
 
 void setUpLog(RunContext& run, const CommonOptions& o, ProgressBar& bar) {
@@ -103,17 +121,6 @@ void writeJson(const std::string& target, const Json& json) {
         std::cout << json.dump(2) << '\n';
     else
         writeFileAtomically(target, json.dump(2) + "\n");
-}
-
-std::unique_ptr<Scene> loadScene(const fs::path& file, const CommonOptions& o, RunContext& run) {
-    const PhaseTimer timer(run, "load scene");
-    GltfOptions options;
-    options.allowOutside = o.allowOutside;
-    options.scene = o.sceneName;
-    options.onWarning = [&run](const std::string& warning) { run.warn(warning); };
-    auto scene = std::make_unique<Scene>(loadGltf(file, options));
-    for (const std::string& warning : scene->description().warnings) run.warn(warning);
-    return scene;
 }
 
 void checkOutputs(const std::vector<fs::path>& outputs, const CommonOptions& o) {
@@ -183,11 +190,8 @@ int runEmit(EmitOptions& o, const CommonOptions& common, RunContext& run) {
         if (o.store == name(store)) o.settings.store = store;
     o.settings.aim = !o.noAim;
     o.settings.lights = splitNames(o.lights);
-    const auto scene = loadScene(o.scene, common, run);
-    if (scene->lights().empty())
-        throw Error(
-            fmt::format("{}: no light in the scene: expected an emissive material or a light of KHR_lights_punctual",
-                        o.scene.string()));
+    const auto scene = loadScene(o.scene, common.scene, run);
+    if (scene->lights().empty()) throw Error(noLightError(*scene));
     const IndexRange wanted =
         o.shard.empty() ? IndexRange{0, o.settings.photons} : parseShard(o.shard, o.settings.photons);
     const auto range = resumeFrom(o, wanted, run);
@@ -326,7 +330,7 @@ int runRender(RenderOptions& o, const CommonOptions& common, const CLI::App& app
     checkOutputs({common.json}, common);
     // Expressions are refused before the scene is loaded.
     const RenderLayers layers(o.settings.paths, o.settings.only);
-    const auto scene = loadScene(o.scene, common, run);
+    const auto scene = loadScene(o.scene, common.scene, run);
     const std::vector<CameraDescription> cameras = camerasOf(*scene, o.settings.camera);
     const std::vector<fs::path> files = picturesOf(o, cameras, all);
     if (all) checkPictures(files, common);
@@ -522,6 +526,7 @@ int parseAndRun(int argc, char** argv) {
         const auto v = parseInts("--crop", compareCrop, ',', 4, "X0,Y0,X1,Y1 in pixels");
         compare.crop = {v[0], v[1], v[2], v[3]};
     }
+    if (!common.environment.file.empty()) common.scene.environment = common.environment;
     RunContext run(common.threads, common.seed);
     interruptible = &run;
     ProgressBar bar;
@@ -531,7 +536,7 @@ int parseAndRun(int argc, char** argv) {
     if (referenceCommand->parsed()) return runRender(reference, common, *referenceCommand, run);
     if (compareCommand->parsed()) return runCompare(compare, common, run);
     if (mergeCommand->parsed()) return runMerge(maps, merged, common, run);
-    info.allowOutside = common.allowOutside;
+    info.scene = common.scene;
     return runInfo(infoFile, info, common, run);
 }
 

@@ -9,6 +9,7 @@
 #include "passes/clock.h"
 #include "passes/map_source.h"
 #include "passes/picture.h"
+#include "passes/scene_source.h"
 #include "scene/creases.h"
 
 namespace lsde {
@@ -122,11 +123,7 @@ class Render {
           layers_(settings.paths, settings.only),
           selected_(scene.lightSelection(settings.lights)),
           clock_(settings.cpuLimit, settings.wallLimit) {
-        if (scene.lights().empty())
-            throw Error(
-                fmt::format("{}: no light in the scene: expected an emissive material or a light of "
-                            "KHR_lights_punctual",
-                            scene.description().file.string()));
+        if (scene.lights().empty()) throw Error(noLightError(scene));
         for (const CameraDescription& camera : cameras) cameras_.push_back(makeCamera(camera, settings));
         if (settings.progressive > 0 && cameras_.size() > 1)
             throw UsageError(

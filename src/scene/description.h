@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "image/image.h"
 #include "scene/material.h"
 #include "scene/mesh.h"
 #include "scene/texture.h"
@@ -23,6 +24,21 @@ struct PunctualLight {
     Vec3 direction{0, 0, -1};  // the way the light shines (-Z of the node)
     float innerConeAngle = 0;  // rad
     float outerConeAngle = kPi / 4;
+};
+
+// Light from all directions; how the picture lies around the scene: scene/environment_map.h.
+struct EnvironmentDescription {
+    std::string name;
+    RgbImage image;  // W/(m2 sr), finite and >= 0, not all black
+    float turn = 0;  // rad about +Y
+};
+
+// The sun's disc, of even radiance.
+struct SunDescription {
+    std::string name;
+    Vec3 direction{0, 1, 0};  // unit, to it
+    float angularRadius = 0;  // rad, > 0
+    Rgb radiance{0};          // W/(m2 sr)
 };
 
 enum class CameraKind : uint8_t { Perspective, Orthographic, ThinLens };
@@ -49,6 +65,9 @@ struct SceneDescription {
     std::vector<Material> materials;  // at least one: index 0.. as in the file, then the default material if used
     std::vector<Texture> textures;
     std::vector<PunctualLight> lights;
+    // From beyond the scene; not in the file: added by what the user asks for.
+    std::optional<EnvironmentDescription> environment;
+    std::optional<SunDescription> sun;
     std::vector<CameraDescription> cameras;  // of the chosen scene
     std::vector<std::string> warnings;       // each one line, already counted
 };

@@ -107,6 +107,21 @@ void add(Hasher& h, const PunctualLight& l) {
     h.value(l.outerConeAngle);
 }
 
+void add(Hasher& h, const EnvironmentDescription& e) {
+    h.value(e.name);
+    h.value(e.image.width);
+    h.value(e.image.height);
+    h.array(e.image.pixels);
+    h.value(e.turn);
+}
+
+void add(Hasher& h, const SunDescription& s) {
+    h.value(s.name);
+    h.value(s.direction);
+    h.value(s.angularRadius);
+    h.value(s.radiance);
+}
+
 template <typename T>
 void addAll(Hasher& h, const std::vector<T>& items) {
     h.value(items.size());
@@ -121,6 +136,8 @@ std::string hashDescription(const SceneDescription& description) {
     addAll(h, description.materials);
     addAll(h, description.textures);
     addAll(h, description.lights);
+    if (description.environment) add(h, *description.environment);
+    if (description.sun) add(h, *description.sun);
     return h.digest();
 }
 

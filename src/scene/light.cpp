@@ -166,6 +166,7 @@ LightSample PointLight::sampleToward(Vec3 p) const {
 Rgb Light::power() const {
     if (const auto* area = std::get_if<AreaLight>(&shape)) return area->power;
     if (const auto* point = std::get_if<PointLight>(&shape)) return point->power();
+    if (const auto* infinite = std::get_if<InfiniteLight>(&shape)) return infinite->power();
     return std::get<DirectionalLight>(shape).power();
 }
 
@@ -174,6 +175,10 @@ bool Light::sampleToward(Vec3 p, Vec2 u, LightSample& sample) const {
         sample = area->sampleToward(p, u);
     } else if (const auto* point = std::get_if<PointLight>(&shape)) {
         sample = point->sampleToward(p);
+    } else if (const auto* infinite = std::get_if<InfiniteLight>(&shape)) {
+        sample.distance = kInfinity;
+        sample.wi = infinite->sample(u, sample.pdfW);
+        sample.radiance = infinite->radiance(sample.wi);
     } else {
         const auto& sun = std::get<DirectionalLight>(shape);
         sample = {-sun.direction, kInfinity, sun.irradiance, 1};

@@ -1,4 +1,4 @@
-// Sources of light: emissive meshes, point, spot and directional lights.
+// Sources of light: emissive meshes, point, spot and directional lights, and those beyond the scene.
 //
 // Each can be asked two ways: for the light that arrives at a point (direct light), and for a ray that leaves it
 // (emission). Powers are of the whole light, in W per channel.
@@ -12,13 +12,14 @@
 #include "base/ray.h"
 #include "sampling/distribution.h"
 #include "scene/description.h"
+#include "scene/infinite_light.h"
 
 namespace lsde {
 
 // Light arriving at a point from one sampled direction.
 struct LightSample {
     Vec3 wi{0};           // unit, from the point to the light
-    float distance = 0;   // m; infinite for a directional light
+    float distance = 0;   // m; infinite for a directional or infinite light
     Rgb radiance{0};      // W/(m2 sr); for a delta light irradiance on a plane facing it (pdfW is 1)
     float pdfW = 0;       // 1/sr
     float clearance = 0;  // m before the light at which a shadow ray must end so as not to meet the light itself
@@ -80,10 +81,12 @@ struct DirectionalLight {
 
 struct Light {
     std::string name;
-    std::variant<AreaLight, PointLight, DirectionalLight> shape;
+    std::variant<AreaLight, PointLight, DirectionalLight, InfiniteLight> shape;
 
     Rgb power() const;
-    bool isDelta() const { return !std::holds_alternative<AreaLight>(shape); }
+    bool isDelta() const {
+        return std::holds_alternative<PointLight>(shape) || std::holds_alternative<DirectionalLight>(shape);
+    }
     // False (and nothing arrives) where the light cannot reach p.
     bool sampleToward(Vec3 p, Vec2 u, LightSample& sample) const;
 };

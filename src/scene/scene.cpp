@@ -97,8 +97,19 @@ void Scene::buildLights() {
         }
         lights_.push_back({p.name, light});
     }
+    buildInfiniteLights();
     if (lights_.size() > 65535)
         throw Error(fmt::format("{}: {} lights, expected at most 65535", description_.file.string(), lights_.size()));
+}
+
+void Scene::buildInfiniteLights() {
+    const auto add = [&](const std::string& name, std::variant<EnvironmentMap, SunDisc> source) {
+        infiniteLights_.push_back(lights_.size());
+        lights_.push_back({name, InfiniteLight{std::move(source), boundingSphere_}});
+    };
+    if (const auto& e = description_.environment) add(e->name, EnvironmentMap(e->image, e->turn));
+    if (const auto& s = description_.sun)
+        add(s->name, SunDisc{s->direction, 2 * square(std::sin(0.5F * s->angularRadius)), s->radiance});
 }
 
 void Scene::buildCasters() {

@@ -49,6 +49,8 @@ class Scene {
     const SceneDescription& description() const { return description_; }
     const std::string& hash() const { return hash_; }  // geometry, materials, lights, textures; not cameras
     const std::vector<Light>& lights() const { return lights_; }
+    // Those of them that lie beyond the scene: what escapes may see them.
+    const std::vector<size_t>& infiniteLights() const { return infiniteLights_; }
     const std::vector<Medium>& media() const { return media_; }
     const std::vector<MeshInfo>& meshes() const { return meshes_; }
     const std::vector<std::string>& objects() const { return objects_; }
@@ -85,6 +87,7 @@ class Scene {
     void buildMedia();
     void findTouching();
     void buildLights();
+    void buildInfiniteLights();
     void buildCasters();
     void checkNesting() const;
     std::vector<MediumId> solidsAround(Vec3 p) const;  // innermost (left first) to outermost
@@ -99,6 +102,7 @@ class Scene {
     std::vector<std::string> objects_;
     std::vector<Medium> media_;
     std::vector<Light> lights_;
+    std::vector<size_t> infiniteLights_;
     std::vector<Caster> casters_;
     Sphere boundingSphere_;
     Bounds bounds_;

@@ -37,4 +37,8 @@ float directLightPdf(const Scene& scene, const LightChoice& lights, Vec3 from, c
     return lights.probability(index) * area.pdfToward(from, hit.triangle, wi, distance);
 }
 
+float directLightPdf(const Scene& scene, const LightChoice& lights, size_t light, Vec3 wi) {
+    return lights.probability(light) * std::get<InfiniteLight>(scene.lights()[light].shape).pdfW(wi);
+}
+
 }  // namespace lsde

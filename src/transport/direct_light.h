@@ -27,5 +27,7 @@ DirectLight sampleDirectLight(const Scene& scene, const LightChoice& lights, con
 // vertex at `from` at `distance` in direction wi.
 float directLightPdf(const Scene& scene, const LightChoice& lights, Vec3 from, const Surface& hit, Vec3 wi,
                      float distance);
+// The same of an infinite light.
+float directLightPdf(const Scene& scene, const LightChoice& lights, size_t light, Vec3 wi);
 
 }  // namespace lsde

@@ -24,7 +24,8 @@ double usefulness(const Light& light, const Sphere& caster) {
         const float reach = std::acos(1 - cone.oneMinusCos) + std::acos(1 - point->oneMinusCosOuter);
         return between < reach ? cone.oneMinusCos : 0;
     }
-    if (std::holds_alternative<DirectionalLight>(light.shape)) return square(caster.radius);
+    if (std::holds_alternative<DirectionalLight>(light.shape) || std::holds_alternative<InfiniteLight>(light.shape))
+        return square(caster.radius);
     const auto& area = std::get<AreaLight>(light.shape);
     constexpr int kPoints = 32;
     double sum = 0;
@@ -61,7 +62,7 @@ DirectionMap directionsOf(const Cone& cone, const DirectionMap& all) {
 PrimaryPoint primaryPoint(Vec2 first, Vec2 second) { return {first.x, first.y, second.x, second.y}; }
 
 // How many of its numbers choose where a light's path starts and goes, and so can be learnt.
-int dimensionsOf(const Light& light) { return std::holds_alternative<AreaLight>(light.shape) ? 4 : 2; }
+int dimensionsOf(const Light& light) { return light.isDelta() ? 2 : 4; }
 
 }  // namespace
 
@@ -125,7 +126,7 @@ DiscreteDistribution EmissionSampler::partsOf(const Light& light) const {
 EmissionSampler::Aim EmissionSampler::aimOf(const Light& light, const std::vector<Bounds>& solids) const {
     Aim out;
     out.parts = partsOf(light);
-    out.positioned = dimensionsOf(light) == 4;
+    out.firstShared = dimensionsOf(light) == 4;
     if (const auto* point = std::get_if<PointLight>(&light.shape)) out.media = scene_.mediaAt(point->position);
     if (const auto* area = std::get_if<AreaLight>(&light.shape))
         out.mayStartInside =
@@ -167,22 +168,25 @@ float EmissionSampler::aimedConePdf(const Aim& aim, Vec3 position, Vec3 directio
         if (i != drawn.part && !within(cone, direction)) continue;
         const float learnt = learntDensity(aim, i, drawn, [&] {
             const Vec2 square = directionsOf(cone, all).square(direction);
-            return aim.positioned ? primaryPoint({u[0], u[1]}, square) : primaryPoint(square, Vec2(0));
+            return aim.firstShared ? primaryPoint({u[0], u[1]}, square) : primaryPoint(square, Vec2(0));
         });
         pdf += aim.parts.pmf(i) * learnt * (cone.everything ? all.pdf(direction) : conePdf(cone.oneMinusCos));
     }
     return pdf;
 }
 
-float EmissionSampler::aimedDiscPdf(const Aim& aim, const DirectionalLight& light, Vec3 position, Draw drawn) const {
-    const Frame frame(light.direction);
+float EmissionSampler::aimedDiscPdf(const Aim& aim, Vec3 direction, Vec3 position, const PrimaryPoint& u,
+                                    Draw drawn) const {
+    const Frame frame(direction);
     float pdf = 0;
     for (size_t i = 1; i < aim.parts.size(); ++i) {
         const Sphere& s = targets_[i - 1];
         const Vec2 d = discOffset(s, position, frame);
         if (i != drawn.part && glm::dot(d, d) > square(s.radius)) continue;
-        const float learnt =
-            learntDensity(aim, i, drawn, [&] { return primaryPoint(diskToSquare(d / s.radius), Vec2(0)); });
+        const float learnt = learntDensity(aim, i, drawn, [&] {
+            const Vec2 disc = diskToSquare(d / s.radius);
+            return aim.firstShared ? primaryPoint({u[0], u[1]}, disc) : primaryPoint(disc, Vec2(0));
+        });
         pdf += aim.parts.pmf(i) * learnt / (kPi * square(s.radius));
     }
     return pdf;
@@ -226,23 +230,36 @@ bool EmissionSampler::samplePoint(const PointLight& light, const Aim& aim, Sampl
     return true;
 }
 
+float EmissionSampler::startOnDisc(const Sphere& scene, Vec3 direction, const Aim& aim, Draw drawn,
+                                   LightPathStart& start) const {
+    const size_t first = aim.firstShared ? 2 : 0;
+    const Vec2 u = squareToDisk({start.u[first], start.u[first + 1]});
+    const Frame frame(direction);
+    const Sphere& disc = start.part > 0 ? targets_[start.part - 1] : scene;
+    const Vec3 inPlane = disc.centre + disc.radius * (u.x * frame.x + u.y * frame.y);
+    // Back to a plane before the whole scene.
+    const float back = glm::dot(inPlane - scene.centre, direction) + 1.01F * scene.radius;
+    start.ray = {inPlane - back * direction, direction, kInfinity};
+    const Densities d = discDensities(scene, direction, inPlane, aim, start.u, drawn);
+    start.aimWeight = d.whole / d.mixture;
+    return d.whole > 0 ? d.mixture : kInfinity;
+}
+
 void EmissionSampler::sampleDirectional(const DirectionalLight& light, const Aim& aim, Sampler& sampler,
                                         LightPathStart& start) const {
     start.u = primaryPoint(sampler.next2D(), Vec2(0));
     const Draw drawn = draw(aim, start.part, start.u);
-    const Vec2 u = squareToDisk({start.u[0], start.u[1]});
-    const Frame frame(light.direction);
-    const Sphere& disc = start.part > 0 ? targets_[start.part - 1] : light.scene;
-    const Vec3 inPlane = disc.centre + disc.radius * (u.x * frame.x + u.y * frame.y);
-    // Back to a plane before the whole scene.
-    const float back = glm::dot(inPlane - light.scene.centre, light.direction) + 1.01F * light.scene.radius;
-    start.ray = {inPlane - back * light.direction, light.direction, kInfinity};
-    const float whole = 1 / (kPi * square(light.scene.radius));
-    const Vec2 offset = discOffset(light.scene, inPlane, frame);
-    const bool inWhole = glm::dot(offset, offset) <= square(light.scene.radius);
-    const float mixture = (inWhole ? aim.parts.pmf(0) * whole : 0) + aimedDiscPdf(aim, light, inPlane, drawn);
-    start.power = inWhole ? light.irradiance / mixture : Rgb(0);
-    start.aimWeight = whole / mixture;
+    start.power = light.irradiance / startOnDisc(light.scene, light.direction, aim, drawn, start);
+}
+
+void EmissionSampler::sampleInfinite(const InfiniteLight& light, const Aim& aim, Sampler& sampler,
+                                     LightPathStart& start) const {
+    const Vec2 uDirection = sampler.next2D();
+    start.u = primaryPoint(uDirection, sampler.next2D());
+    const Draw drawn = draw(aim, start.part, start.u);
+    float pdfW = 0;
+    const Vec3 towards = light.sample({start.u[0], start.u[1]}, pdfW);
+    start.power = light.radiance(towards) / (pdfW * startOnDisc(light.scene, -towards, aim, drawn, start));
 }
 
 bool EmissionSampler::sample(Sampler& sampler, LightPathStart& start) const {
@@ -260,6 +277,8 @@ bool EmissionSampler::sample(Sampler& sampler, LightPathStart& start) const {
         emits = sampleArea(*area, aim, sampler, start);
     else if (const auto* point = std::get_if<PointLight>(&light.shape))
         emits = samplePoint(*point, aim, sampler, start);
+    else if (const auto* infinite = std::get_if<InfiniteLight>(&light.shape))
+        sampleInfinite(*infinite, aim, sampler, start);
     else
         sampleDirectional(std::get<DirectionalLight>(light.shape), aim, sampler, start);
     if (!emits || isBlack(start.power)) return false;
@@ -281,13 +300,22 @@ EmissionSampler::Densities EmissionSampler::directionDensities(size_t index, Vec
     return d;
 }
 
-EmissionSampler::Densities EmissionSampler::discDensities(size_t index, Vec3 position) const {
-    const auto& light = std::get<DirectionalLight>(scene_.lights()[index].shape);
-    const Vec2 offset = discOffset(light.scene, position, Frame(light.direction));
+EmissionSampler::Densities EmissionSampler::discDensities(const Sphere& scene, Vec3 direction, Vec3 position,
+                                                          const Aim& aim, const PrimaryPoint& u, Draw drawn) const {
+    const Vec2 offset = discOffset(scene, position, Frame(direction));
     Densities d;
-    d.whole = glm::dot(offset, offset) <= square(light.scene.radius) ? 1 / (kPi * square(light.scene.radius)) : 0;
-    d.mixture = aims_[index].parts.pmf(0) * d.whole + aimedDiscPdf(aims_[index], light, position, {0, 1});
+    d.whole = glm::dot(offset, offset) <= square(scene.radius) ? 1 / (kPi * square(scene.radius)) : 0;
+    d.mixture = aim.parts.pmf(0) * d.whole + aimedDiscPdf(aim, direction, position, u, drawn);
     return d;
+}
+
+EmissionSampler::Densities EmissionSampler::discDensities(size_t light, Vec3 position, Vec3 direction,
+                                                          Vec2 uDirection) const {
+    const auto& shape = scene_.lights()[light].shape;
+    const auto* directional = std::get_if<DirectionalLight>(&shape);
+    const Sphere& scene = directional != nullptr ? directional->scene : std::get<InfiniteLight>(shape).scene;
+    return discDensities(scene, directional != nullptr ? directional->direction : direction, position, aims_[light],
+                         primaryPoint(uDirection, Vec2(0)), {0, 1});
 }
 
 }  // namespace lsde

@@ -1,9 +1,9 @@
 // Where light paths start: a light, a point on it, a direction; aimed at what bends light.
 //
 // Each light samples a mixture of its whole emission and of parts aimed at spheres, the casters' bounds and larger ones
-// around all casters: cones for point, spot and area lights, discs for directional ones (Jensen 1996, projection maps;
-// as a defensive mixture after Hesterberg 1995). Where within a part paths are worth most can be learnt from trials.
-// Every path's weight is whole density / mixture density.
+// around all casters: cones for point, spot and area lights, discs for directional and infinite ones (Jensen 1996,
+// projection maps; as a defensive mixture after Hesterberg 1995). Where within a part paths are worth most can be
+// learnt from trials. Every path's weight is whole density / mixture density.
 #pragma once
 
 #include <vector>
@@ -32,7 +32,7 @@ struct LightPathStart {
     size_t light = 0;
     float aimWeight = 1;  // whole / mixture density
     size_t part = 0;      // of the mixture; 0: the whole emission
-    PrimaryPoint u{};     // as used: position (where it is chosen), then direction
+    PrimaryPoint u{};     // as used: position (where it is chosen), then direction; infinite lights: the other way
 };
 
 // A path that was tried, to learn from.
@@ -65,14 +65,16 @@ class EmissionSampler {
     };
     Densities directionDensities(size_t light, Vec3 position, Vec3 normal, Vec3 direction,
                                  Vec2 uPosition = Vec2(0)) const;
-    Densities discDensities(size_t light, Vec3 position) const;
+    // Of an infinite light in the direction that uDirection chose; a directional light has its own.
+    Densities discDensities(size_t light, Vec3 position, Vec3 direction = Vec3(0), Vec2 uDirection = Vec2(0)) const;
 
   private:
     // Part 0 is the whole emission, part 1 + i is aimed at target i.
     struct Aim {
         DiscreteDistribution parts;
         std::vector<PrimaryDensity> learnt;  // of each part's numbers; empty: even
-        bool positioned = false;             // the first two of them choose a position
+        bool firstShared = false;            // the first two of them choose what all parts start from: the position on
+                                             // an area light, the direction of an infinite one
         MediaStack media;                    // point and spot lights: the solids around them
         bool mayStartInside = false;  // area lights: paths may start within a solid, its media are looked up for each
     };
@@ -94,12 +96,17 @@ class EmissionSampler {
     bool samplePoint(const PointLight& light, const Aim& aim, Sampler& sampler, LightPathStart& start) const;
     void sampleDirectional(const DirectionalLight& light, const Aim& aim, Sampler& sampler,
                            LightPathStart& start) const;
+    void sampleInfinite(const InfiniteLight& light, const Aim& aim, Sampler& sampler, LightPathStart& start) const;
+    // On a disc before the whole scene, facing the direction; returns the mixture's density there (1/m2).
+    float startOnDisc(const Sphere& scene, Vec3 direction, const Aim& aim, Draw drawn, LightPathStart& start) const;
+    Densities discDensities(const Sphere& scene, Vec3 direction, Vec3 position, const Aim& aim, const PrimaryPoint& u,
+                            Draw drawn) const;
     // Sum over the aimed parts of choice probability times density. The part that drew the direction counts even if
     // rounding put it just beyond the cone's edge: it would weigh as what is hardly ever drawn. `all`: the whole
     // emission, which is what a part inside its target aims at.
     float aimedConePdf(const Aim& aim, Vec3 position, Vec3 direction, const DirectionMap& all, const PrimaryPoint& u,
                        Draw drawn) const;
-    float aimedDiscPdf(const Aim& aim, const DirectionalLight& light, Vec3 position, Draw drawn) const;
+    float aimedDiscPdf(const Aim& aim, Vec3 direction, Vec3 position, const PrimaryPoint& u, Draw drawn) const;
 
     const Scene& scene_;
     DiscreteDistribution choice_;

@@ -25,6 +25,7 @@ float intensityOf(const Light& light) {
     if (const auto* area = std::get_if<AreaLight>(&light.shape))
         return luminance(area->power) / (area->twoSided ? 2 * kPi : kPi);
     if (const auto* point = std::get_if<PointLight>(&light.shape)) return luminance(point->intensity);
+    if (const auto* infinite = std::get_if<InfiniteLight>(&light.shape)) return luminance(infinite->integral());
     return luminance(std::get<DirectionalLight>(light.shape).irradiance);
 }
 
@@ -41,6 +42,13 @@ Vec3 axisOf(const Light& light) {
         if (!(glm::dot(axis, normal) > 0.999F)) return Vec3(0);
     }
     return axis;
+}
+
+// Where light at no place comes from, for the cosine at a surface; 0: all around, or from several sides.
+Vec3 comesFrom(const Light& light) {
+    if (const auto* directional = std::get_if<DirectionalLight>(&light.shape)) return -directional->direction;
+    const auto* sun = std::get_if<SunDisc>(&std::get<InfiniteLight>(light.shape).source);
+    return sun != nullptr ? sun->direction : Vec3(0);
 }
 
 // Halves the parts across their longest side until there are `limit` of them, or each is one light.
@@ -74,7 +82,7 @@ std::vector<std::vector<size_t>> partsByPlace(const Scene& scene, std::vector<si
 LightSampler::LightSampler(const Scene& scene, const std::vector<bool>& selected)
     : groupOf_(scene.lights().size(), kNone), memberOf_(scene.lights().size(), 0) {
     std::vector<double> weights(scene.lights().size());
-    std::vector<size_t> placed, directional;
+    std::vector<size_t> placed, directional, infinite;
     std::vector<Sphere> emitters;
     double total = 0;
     for (size_t i = 0; i < weights.size(); ++i) {
@@ -82,17 +90,25 @@ LightSampler::LightSampler(const Scene& scene, const std::vector<bool>& selected
         const Light& light = scene.lights()[i];
         weights[i] = luminance(light.power());
         total += weights[i];
-        (std::holds_alternative<DirectionalLight>(light.shape) ? directional : placed).push_back(i);
+        (std::holds_alternative<DirectionalLight>(light.shape) ? directional
+         : std::holds_alternative<InfiniteLight>(light.shape)  ? infinite
+                                                               : placed)
+            .push_back(i);
         if (std::holds_alternative<AreaLight>(light.shape)) emitters.push_back(boundsOf(light));
     }
-    const auto count = static_cast<double>(placed.size() + directional.size());
+    const auto count = static_cast<double>(placed.size() + directional.size() + infinite.size());
     if (count == 0) throw Error(scene.description().file.string() + ": no light is selected");
     // A fifth of the choice by power is even.
     for (double& w : weights) w = 0.2 / count + (total > 0 ? 0.8 * w / total : 0.8 / count);
-    onePoint_ = count == 1 && emitters.empty();
-    for (std::vector<size_t>& part : partsByPlace(scene, std::move(placed), LightChoice::kMostGroups - 1))
+    onePoint_ = count == 1 && emitters.empty() && infinite.empty();
+    const size_t mostPlaced = LightChoice::kMostGroups - 1 - infinite.size();
+    for (std::vector<size_t>& part : partsByPlace(scene, std::move(placed), mostPlaced))
         addGroup(scene, std::move(part), weights);
     if (!directional.empty()) addGroup(scene, std::move(directional), weights);
+    for (const size_t i : infinite) {
+        addGroup(scene, {i}, weights);
+        surrounded_ |= std::get<InfiniteLight>(scene.lights()[i].shape).surrounds();
+    }
     if (!emitters.empty()) emitters_ = groupCasters(std::move(emitters), kMostEmitters);
 }
 
@@ -107,14 +123,15 @@ void LightSampler::addGroup(const Scene& scene, std::vector<size_t> members, con
         own.push_back(weights[i]);
         spheres.push_back(boundsOf(light));
         group.intensity += intensityOf(light);
-        group.directional = std::holds_alternative<DirectionalLight>(light.shape);
+        group.everywhere =
+            std::holds_alternative<DirectionalLight>(light.shape) || std::holds_alternative<InfiniteLight>(light.shape);
     }
     group.choice = DiscreteDistribution(own);
     group.byPower = static_cast<float>(group.choice.total());
     group.bounds = groupCasters(std::move(spheres), 1).front().bounds;
     if (members.size() == 1) {
         group.light = &scene.lights()[members.front()];
-        group.axis = axisOf(*group.light);
+        group.axis = group.everywhere ? comesFrom(*group.light) : axisOf(*group.light);
     }
     group.members = std::move(members);
     groups_.push_back(std::move(group));
@@ -122,11 +139,9 @@ void LightSampler::addGroup(const Scene& scene, std::vector<size_t> members, con
 
 // What the group may send to the place: W/m2 of luminance, or more.
 float LightSampler::arriving(const Group& group, const LitPlace& place) {
-    if (group.directional) {
-        if (group.light == nullptr) return group.intensity;
-        const Vec3 direction = std::get<DirectionalLight>(group.light->shape).direction;
-        return group.intensity * std::max(0.0F, -glm::dot(direction, place.normal));
-    }
+    if (group.everywhere)
+        return group.axis == Vec3(0) ? group.intensity
+                                     : group.intensity * std::max(0.0F, glm::dot(group.axis, place.normal));
     const Vec3 d = group.bounds.centre - place.position;
     const float nearest2 = square(group.bounds.radius), d2 = std::max(lengthSquared(d), 1e-30F);
     if (d2 <= nearest2) return group.intensity / nearest2;
@@ -159,6 +174,7 @@ LightChoice LightSampler::at(const LitPlace& place) const {
 }
 
 float LightSampler::bsdfSamples(const LitPlace& place) const {
+    if (surrounded_) return 1;
     float share = 0;
     for (const Caster& e : emitters_) share += cosineShare(coneTo(e.bounds, place.position), place.normal);
     return std::min(1.0F, share / kNearEmitters);

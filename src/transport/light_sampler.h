@@ -55,10 +55,10 @@ class LightSampler {
     static constexpr uint32_t kNone = ~0U;
     struct Group {
         Sphere bounds;
-        float intensity = 0;           // W/sr, luminance, of all its lights; directional: W/m2
+        float intensity = 0;           // W/sr, luminance, of all its lights; directional, infinite: W/m2
         const Light* light = nullptr;  // of a group of one
-        Vec3 axis{0};                  // mean normal of a flat one-sided emitter; else 0
-        bool directional = false;
+        Vec3 axis{0};  // mean normal of a flat one-sided emitter; where a single directional light or sun is; else 0
+        bool everywhere = false;  // directional or infinite: at no place
         std::vector<size_t> members;
         DiscreteDistribution choice;  // among the members
         float byPower = 0;            // probability that the place does not change
@@ -70,6 +70,7 @@ class LightSampler {
     std::vector<uint32_t> groupOf_, memberOf_;  // of each light
     std::vector<Caster> emitters_;              // spheres that hold the lights with an area
     bool onePoint_ = false;
+    bool surrounded_ = false;  // by a light that shines from all around
 };
 
 }  // namespace lsde

@@ -46,6 +46,14 @@ class Cli(unittest.TestCase):
             self.assertIn(part, errors[0])
         return errors[0]
 
+    def sky(self, name='sky.hdr', *, bright=(200, 150, 100, 132), width=16):
+        """An environment: even light and one brighter pixel, as a Radiance picture."""
+        pixels = [(90, 110, 160, 128)] * (width * width // 2)
+        pixels[width // 8 + width * (width // 8)] = bright
+        path = self.folder / name
+        path.write_bytes(b'#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y %d +X %d\n' % (width // 2, width) + bytes(sum(pixels, ())))
+        return path
+
     def emit(self, name='m.lsmap', scene=SPHERE, *more):
         self.run_lsde('emit', scene, '-o', name, *MAP_PHOTONS, '--quiet', *more)
         return self.folder / name
@@ -180,6 +188,29 @@ class Scenes(Cli):
         dark = self.glb(change)
         self.refused('render', dark, '-o', 'a.exr', *FAST, says='light')
         self.assertIn('no light', self.run_lsde('info', dark).stdout)
+
+    def test_an_environment_lights_a_scene_that_has_no_light_and_its_map_knows_it(self):
+        dark = self.glb(lambda d: [m.pop('emissiveFactor', None) or m.get('extensions', {}).pop('KHR_materials_emissive_strength', None)
+                                   for m in d['materials']])
+        sky = self.sky()
+        self.refused('emit', dark, '-o', 'm.lsmap', says=['no light', '--sky', '--environment'])
+        self.run_lsde('emit', dark, '-o', 'm.lsmap', *MAP_PHOTONS, '--environment', sky)
+        figures = json.loads(self.run_lsde('info', 'm.lsmap', '--json', '-').stdout)
+        self.assertEqual(figures['lights'], ['environment'])
+        self.assertTrue(figures['ledgerExact'])
+        scene = json.loads(self.run_lsde('info', dark, '--environment', sky, '--json', '-').stdout)
+        self.assertEqual([light['kind'] for light in scene['lights']], ['environment'])
+        self.run_lsde('render', dark, '--environment', sky, '--map', 'm.lsmap', '-o', 'a.exr', *FAST, '--lights', 'environment')
+        for other in [[], ['--environment', self.sky('other.hdr', bright=(200, 150, 99, 132))], ['--environment', sky, '--environment-rotate', 1],
+                      ['--environment', sky, '--environment-strength', 2]]:
+            self.refused('render', dark, *other, '--map', 'm.lsmap', '-o', 'b.exr', *FAST, says='no light' if not other else 'another scene')
+
+    def test_an_environment_that_cannot_be_used_is_named(self):
+        self.refused('info', SPHERE, '--environment', 'none.exr', says='none.exr')
+        self.refused('info', SPHERE, '--environment', SPHERE, says=['.glb', 'expected an OpenEXR'])
+        (self.folder / 'cut.hdr').write_bytes(self.sky().read_bytes()[:-1])
+        self.refused('render', SPHERE, '-o', 'a.exr', '--environment', 'cut.hdr', says=['cut.hdr', 'row 7 is cut short'])
+        self.run_lsde('info', SPHERE, '--environment-rotate', 90, code=2)
 
     def test_a_scene_without_a_camera_is_framed(self):
         def change(d):

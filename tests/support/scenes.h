@@ -123,6 +123,17 @@ inline Material emitter(Rgb radiance, bool twoSided = false) {
     return m;
 }
 
+// ---- environments
+
+// Of the same brightness all around but for a bright and a coloured spot, and a texel that is black.
+inline RgbImage spottedSky(int width = 16) {
+    RgbImage sky(width, width / 2, Rgb(0.5F, 0.6F, 1));
+    sky.at(width / 8, width / 8) = Rgb(40, 30, 20);
+    sky.at(5 * width / 8, width / 16) = Rgb(0, 4, 0);
+    sky.at(width / 2, width / 4) = Rgb(0);
+    return sky;
+}
+
 // ---- scenes
 
 class SceneBuilder {
@@ -158,6 +169,14 @@ class SceneBuilder {
         l.name = "sun";
         l.kind = PunctualKind::Directional;
         l.direction = glm::normalize(direction);
+    }
+    // Light from all around: a picture of radiance, turned about +Y by `turn` (rad).
+    void environment(RgbImage picture, float turn = 0) {
+        description_.environment = EnvironmentDescription{"environment", std::move(picture), turn};
+    }
+    // A disc of light in the sky, seen in direction `towards`.
+    void sunDisc(Vec3 towards, float angularRadiusDeg, Rgb radiance) {
+        description_.sun = SunDescription{"sun", glm::normalize(towards), angularRadiusDeg * kPi / 180, radiance};
     }
     // All positions times `scale`, then moved. Intensities stay: what is compared must be geometry.
     void transform(float scale, Vec3 move) {

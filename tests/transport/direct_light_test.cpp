@@ -138,6 +138,72 @@ TEST_CASE("a lamp a millimetre away fills the hemisphere") {
     CHECK(radiance.agrees(kAlbedo * kRadiance.x, 5));
 }
 
+namespace {
+
+// Irradiance on a plane that faces up, by the midpoint rule, far finer than the environment's texels.
+double irradianceFromAbove(const InfiniteLight& light) {
+    constexpr int kGrid = 1000;
+    double sum = 0;
+    for (int i = 0; i < kGrid; ++i)
+        for (int k = 0; k < kGrid; ++k) {
+            const double cosine = (i + 0.5) / kGrid, azimuth = 2 * std::numbers::pi * (k + 0.5) / kGrid;
+            const double sine = std::sqrt(1 - cosine * cosine);
+            sum += cosine * static_cast<double>(
+                                light
+                                    .radiance({static_cast<float>(sine * std::cos(azimuth)), static_cast<float>(cosine),
+                                               static_cast<float>(sine * std::sin(azimuth))})
+                                    .x);
+        }
+    return sum * 2 * std::numbers::pi / kGrid / kGrid;
+}
+
+}  // namespace
+
+TEST_CASE("an environment lights a floor as quadrature says, by sampled light alone and by MIS with the BSDF") {
+    for (const float roughness : {1.0F, 0.3F}) {
+        SceneBuilder builder;
+        Material floor = test::lambert(Rgb(kAlbedo));
+        builder.add(test::plate({0, 0, 0}, 5), roughness < 1 ? test::metal(roughness) : floor);
+        builder.environment(test::spottedSky(64), 0.4F);
+        const auto scene = builder.build();
+        const auto& light = std::get<InfiniteLight>(scene->lights()[0].shape);
+        const Vertex v = vertexBelow(*scene, {0.3F, 1, 0.2F}, glm::normalize(Vec3(0.3F, -1, 0.1F)));
+        const LightSampler lights(*scene, test::allLights(*scene));
+        const test::Mean alone = sampleAt(*scene, v, 200'000).radiance;
+        test::Random random(14);
+        test::Mean byMis;
+        WalkScratch scratch;
+        for (int i = 0; i < 200'000; ++i) {
+            const float uLight = random.uniform();
+            const DirectLight d =
+                sampleDirectLight(*scene, lights.at(litPlace(v)), v, {}, uLight, random.uniform2D(), scratch);
+            double sum = d.diffuse.x + d.glossy.x;
+            BsdfSample sample;
+            const float uLobe = random.uniform();
+            PathState next = test::startAt(*scene, {0, 1, 0}, {0, -1, 0});
+            if (sampleBsdf(v.bsdf, v.wo, uLobe, random.uniform2D(), sample) &&
+                scatter(v, sample, Quantity::Radiance, next))
+                sum +=
+                    next.throughput.x * light.radiance(next.ray.direction).x *
+                    powerHeuristic(sample.pdfW, directLightPdf(*scene, lights.at(litPlace(v)), 0, next.ray.direction));
+            byMis.add(sum);
+        }
+        CHECK(test::agree(alone, byMis));
+        if (roughness == 1) CHECK(alone.agrees(irradianceFromAbove(light) * kAlbedo / kPi));
+        CHECK(byMis.standardError() < alone.standardError());
+    }
+}
+
+TEST_CASE("the sun's disc lights a floor as its solid angle and height say") {
+    SceneBuilder builder;
+    builder.add(test::plate({0, 0, 0}, 5), test::lambert(Rgb(kAlbedo)));
+    builder.sunDisc({1, 1, 0}, 0.265F, kRadiance);
+    const auto scene = builder.build();
+    const test::Mean m = sampleAt(*scene, vertexBelow(*scene, {0.3F, 1, 0.2F}), 1000).radiance;
+    const double solidAngle = 2 * std::numbers::pi * (1 - std::cos(0.265 * std::numbers::pi / 180));
+    CHECK(m.value() == doctest::Approx(kRadiance.x * solidAngle * std::sqrt(0.5) * kAlbedo / kPi).epsilon(1e-4));
+}
+
 TEST_CASE("a lamp shines to its front, or to both sides if it is double-sided") {
     for (const bool twoSided : {false, true}) {
         SceneBuilder builder = lampOverFloor(1, 1, twoSided);

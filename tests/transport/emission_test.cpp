@@ -36,9 +36,10 @@ Mesh speck() {
                              corner(0, 0.9F), corner(-0.2F, 0.5F)});
 }
 
-enum class Kind { Point, Spot, NarrowSpot, AreaDown, AreaBothSides, Sun };
-constexpr std::array kKinds = {Kind::Point,    Kind::Spot,          Kind::NarrowSpot,
-                               Kind::AreaDown, Kind::AreaBothSides, Kind::Sun};
+enum class Kind { Point, Spot, NarrowSpot, AreaDown, AreaBothSides, Sun, SunDisc, Environment };
+constexpr std::array kKinds = {Kind::Point,         Kind::Spot, Kind::NarrowSpot, Kind::AreaDown,
+                               Kind::AreaBothSides, Kind::Sun,  Kind::SunDisc,    Kind::Environment};
+const Vec3 kFromSun(0.3F, -1, 0.2F);
 
 void addLight(SceneBuilder& scene, Kind kind, const Mesh& lamp = speck()) {
     const Rgb strength(1, 2, 0.5F);
@@ -56,7 +57,11 @@ void addLight(SceneBuilder& scene, Kind kind, const Mesh& lamp = speck()) {
             scene.add(lamp, test::emitter(strength, true));
             return;
         case Kind::Sun:
-            return scene.sun({0.3F, -1, 0.2F}, strength);
+            return scene.sun(kFromSun, strength);
+        case Kind::SunDisc:
+            return scene.sunDisc(-kFromSun, 0.265F, 1e4F * strength);
+        case Kind::Environment:
+            return scene.environment(test::spottedSky(), 0.4F);
     }
 }
 
@@ -137,16 +142,16 @@ TEST_CASE("also where it has learnt which are worth more") {
 
 namespace {
 
-void checkDiscs(bool learnt) {
+void checkDiscs(Kind kind, bool learnt) {
     SceneBuilder builder;
     addCasters(builder);
     builder.add(test::plate({0, 0, 0}, 3), test::lambert(Rgb(0.5F)));
-    addLight(builder, Kind::Sun);
+    addLight(builder, kind);
     const auto scene = builder.build();
     const EmissionSampler sources =
         learnt ? learntSampler(*scene) : EmissionSampler(*scene, test::allLights(*scene), kAimedAtCasters);
     const Sphere whole = scene->boundingSphere();
-    const Frame frame(glm::normalize(Vec3(0.3F, -1, 0.2F)));
+    const Frame frame(glm::normalize(kFromSun));
     const double side = 2 * whole.radius;
     uint64_t i = 0;
     const auto result = test::chiSquaredOnSquare(
@@ -160,7 +165,7 @@ void checkDiscs(bool learnt) {
         [&](double x, double y) -> double {
             const Vec3 p = whole.centre + frame.toWorld(Vec3(static_cast<float>((x - 0.5) * side),
                                                              static_cast<float>((y - 0.5) * side), 0));
-            const auto d = sources.discDensities(0, p);
+            const auto d = sources.discDensities(0, p, frame.z);
             return d.whole > 0 ? d.mixture * side * side : 0;
         });
     CHECK(result.accepted(kTests));
@@ -168,9 +173,55 @@ void checkDiscs(bool learnt) {
 
 }  // namespace
 
-TEST_CASE("rays of a directional light have the density of its mixture of discs") { checkDiscs(false); }
+TEST_CASE("rays of a directional light and of the sun have the density of its mixture of discs") {
+    checkDiscs(Kind::Sun, false);
+    checkDiscs(Kind::SunDisc, false);
+}
 
-TEST_CASE("also where it has learnt where they are worth more") { checkDiscs(true); }
+TEST_CASE("also where it has learnt where they are worth more") { checkDiscs(Kind::Sun, true); }
+
+TEST_CASE("rays of an environment come from each direction by its density, wherever they are aimed") {
+    SceneBuilder builder;
+    addCasters(builder);
+    addLight(builder, Kind::Environment);
+    const auto scene = builder.build();
+    const EmissionSampler sources(*scene, test::allLights(*scene), kAimedAtCasters);
+    const auto& light = std::get<InfiniteLight>(scene->lights()[0].shape);
+    uint64_t i = 0;
+    // Rays past the scene's disc carry nothing: what is aimed at a caster at its rim. Here all are within it.
+    const auto result = test::chiSquaredOnSphere(
+        {24, 24, 12, 100'000},
+        [&]() -> std::optional<Vec3> {
+            const Drawn d = drawIndependently(sources, i++);
+            return d.emits ? std::optional(-d.start.ray.direction) : std::nullopt;
+        },
+        [&](Vec3 towards) { return light.pdfW(towards); });
+    CHECK(result.accepted(kTests));
+}
+
+TEST_CASE("an even environment's rays go through a small sphere as pi times its cross-section says") {
+    double errorUnaimed = kInfinity;
+    for (const bool aim : {false, true}) {
+        CAPTURE(aim);
+        SceneBuilder builder;
+        addCasters(builder);
+        builder.environment(RgbImage(4, 2, Rgb(3)));
+        const auto scene = builder.build();
+        const EmissionSampler sources(*scene, test::allLights(*scene), aim ? kAimedAtCasters : kNotAimed);
+        const Sphere target{{0.4F, 0.4F, 0.1F}, 0.3F};
+        test::Mean power;
+        for (uint64_t i = 0; i < 200'000; ++i) {
+            const Drawn d = draw(sources, i);
+            const Vec3 toCentre = target.centre - d.start.ray.origin;
+            const bool hit = d.emits && glm::length(glm::cross(d.start.ray.direction, toCentre)) < target.radius;
+            power.add(hit ? d.start.power.x : 0);
+        }
+        CHECK(power.agrees(3 * 4 * kPi * kPi * square(target.radius)));
+        // It lies in a caster.
+        CHECK(power.standardError() < errorUnaimed);
+        errorUnaimed = 0.8 * power.standardError();
+    }
+}
 
 TEST_CASE("no path weighs more than the whole emission's share allows") {
     for (const Kind kind : kKinds)
@@ -195,7 +246,7 @@ TEST_CASE("no path weighs more than the whole emission's share allows") {
 TEST_CASE("nothing that meets a far caster, or its rim, weighs as if it had not been aimed") {
     constexpr float kRadius = 0.01F;
     const Vec3 centre = kLight - Vec3(1, 100, -2);
-    for (const Kind kind : {Kind::Point, Kind::AreaDown, Kind::Sun}) {
+    for (const Kind kind : {Kind::Point, Kind::AreaDown, Kind::Sun, Kind::Environment}) {
         CAPTURE(static_cast<int>(kind));
         SceneBuilder builder;
         builder.add(test::sphere(centre, kRadius, 2), test::metal(0));
@@ -284,7 +335,8 @@ TEST_CASE("the total power is that of Lambert, of all directions, of the spot's 
 
 TEST_CASE("aiming, learnt or not, changes no flux: on a caster, beside it, and by direction") {
     const Mesh lamp = test::plate(kLight, 0.4F, false);
-    for (const Kind kind : {Kind::Point, Kind::Spot, Kind::AreaDown, Kind::AreaBothSides, Kind::Sun}) {
+    for (const Kind kind :
+         {Kind::Point, Kind::Spot, Kind::AreaDown, Kind::AreaBothSides, Kind::Sun, Kind::SunDisc, Kind::Environment}) {
         CAPTURE(static_cast<int>(kind));
         SceneBuilder builder;
         addCasters(builder);
@@ -314,8 +366,8 @@ TEST_CASE("aiming, learnt or not, changes no flux: on a caster, beside it, and b
             CHECK(test::agree(flux[0][t], flux[1][t]));
             CHECK(test::agree(flux[0][t], flux[2][t]));
         }
-        // What aiming is for: under the casters, less noise.
-        CHECK(flux[1][0].standardError() < flux[0][0].standardError());
+        // What aiming is for: under the casters, less noise. From an environment the floor there is lit past them.
+        if (kind != Kind::Environment) CHECK(flux[1][0].standardError() < flux[0][0].standardError());
     }
 }
 

@@ -55,6 +55,8 @@ TEST_CASE("lights are chosen with the probability that is told, few or many, of 
         builder.spot({0, 2, 1}, {0, 0, 0}, Rgb(3), 10, 20);
         builder.sun({0.3F, -1, 0.2F}, Rgb(1));
         builder.sun({0, -1, 0.2F}, Rgb(1));
+        builder.environment(test::spottedSky());
+        builder.sunDisc({1, 2, 0}, 0.265F, Rgb(1e4F));
         const auto scene = builder.build();
         const LightSampler lights(*scene, test::allLights(*scene));
         for (const LitPlace& place : {kUp, LitPlace{{3, 1.5F, 0.2F}, glm::normalize(Vec3(1, 0.2F, 0))}}) {
@@ -98,4 +100,18 @@ TEST_CASE("a light is chosen by what it may send to the place") {
     const LightChoice above = lights.at({{0, 1.5F, 0.5F}, {0, -1, 0}});
     CHECK(above.probability(lamp) < 0.1F);
     CHECK(choice.probability(lamp) > above.probability(lamp));
+}
+
+TEST_CASE("where the sun does not reach, the sky around is chosen") {
+    SceneBuilder builder;
+    builder.add(test::plate({0, 0, 0}, 1), test::lambert(Rgb(0.5F)));
+    builder.environment(RgbImage(4, 2, Rgb(0.1F)));
+    builder.sunDisc({0, 1, 0}, 0.265F, Rgb(1e6F));
+    const auto scene = builder.build();
+    const LightSampler lights(*scene, test::allLights(*scene));
+    CHECK(lights.at(kUp).probability(0) < 0.2F);
+    CHECK(lights.at({{0, 0, 0}, {0, -1, 0}}).probability(0) > 0.9F);
+    CHECK_FALSE(lights.onePoint());
+    CHECK(lights.bsdfSamples(kUp) == 1);
+    CHECK(LightSampler(*scene, {false, true}).bsdfSamples(kUp) == 0);
 }
