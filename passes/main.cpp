@@ -47,6 +47,8 @@ struct CommonOptions {
     std::string json;
     SceneSettings scene;
     EnvironmentSettings environment;
+    bool withSky = false;
+    SkySettings sky;
 };
 
 void addEnvironment(CLI::App& app, CommonOptions& o) {
@@ -63,6 +65,25 @@ void addEnvironment(CLI::App& app, CommonOptions& o) {
         ->needs(file)
         ->check(CLI::PositiveNumber)
         ->type_name("X");
+}
+
+void addSky(CLI::App& app, CommonOptions& o) {
+    CLI::Option* sky =
+        app.add_flag("--sky", o.withSky,
+                     "light from the sun and a clear sky (Preetham et al. 1999): lights \"sun\", \"sky\"")
+            ->excludes("--environment");
+    const auto add = [&](const char* name, float& value, double least, double most, const char* text,
+                         const char* type) {
+        app.add_option(name, value, text)
+            ->needs(sky)
+            ->check(CLI::Range(least, most))
+            ->capture_default_str()
+            ->type_name(type);
+    };
+    add("--sun-elevation", o.sky.sunElevationDeg, 0, 90, "of the sun above the horizon", "DEG");
+    add("--sun-azimuth", o.sky.sunAzimuthDeg, -360, 360, "of the sun, from +Z towards +X", "DEG");
+    add("--turbidity", o.sky.turbidity, 2, 10, "haze of the air: 2 is clear, 10 hazy", "T");
+    add("--ground-albedo", o.sky.groundAlbedo, 0, 1, "of the ground beyond the scene, below the horizon", "A");
 }
 
 void addCommon(CLI::App& app, CommonOptions& o, bool scene) {
@@ -83,6 +104,7 @@ void addCommon(CLI::App& app, CommonOptions& o, bool scene) {
     app.add_option("--scene", o.scene.gltf.scene, "scene within the file, by name or index (default: the file's)")
         ->type_name("NAME");
     addEnvironment(app, o);
+    addSky(app, o);
 }
 
 void setUpLog(RunContext& run, const CommonOptions& o, ProgressBar& bar) {
@@ -226,6 +248,7 @@ struct RenderOptions {
     bool noCache = false;
     uint64_t photons = 0;
     double spp = 0, wall = 0, cpu = 0, error = 0;
+    std::optional<float> exposure;
     std::string integrator = "photon", size, crop, index = "kd", indirect = "photons", only, lights;
     std::vector<std::string> paths;
 };
@@ -299,10 +322,16 @@ std::vector<fs::path> picturesOf(const RenderOptions& o, const std::vector<Camer
     return files;
 }
 
-void writePicture(const fs::path& file, const RenderResult& r, RunContext& run) {
+// Under a sky a white surface that lies in the open is white.
+float exposureStops(const RenderOptions& o, const SceneSettings& scene) {
+    if (o.exposure) return *o.exposure;
+    return scene.sky ? -std::log2(luminance(openIrradiance(*scene.sky)) * kInvPi) : 0;
+}
+
+void writePicture(const fs::path& file, const RenderResult& r, float stops, RunContext& run) {
     const PhaseTimer timer(run, "write picture");
     writeExr(file, r.image, r.metadata);
-    writePng(fs::path(file).replace_extension(".png"), r.picture);
+    writePng(fs::path(file).replace_extension(".png"), r.picture, stops);
 }
 
 Json pictureFigures(const fs::path& file, const RenderResult& r) {
@@ -334,10 +363,11 @@ int runRender(RenderOptions& o, const CommonOptions& common, const CLI::App& app
     const std::vector<CameraDescription> cameras = camerasOf(*scene, o.settings.camera);
     const std::vector<fs::path> files = picturesOf(o, cameras, all);
     if (all) checkPictures(files, common);
+    const float stops = exposureStops(o, common.scene);
     bool interrupted = false;
     Json shared, pictures = Json::array();
     renderPictures(*scene, method, o.settings, cameras, run, [&](size_t camera, RenderResult&& r) {
-        writePicture(files[camera], r, run);
+        writePicture(files[camera], r, stops, run);
         run.info(fmt::format("{}: {} samples a pixel, {} light paths, {:.1f} CPU s", files[camera].string(), r.samples,
                              r.photons, cpuSeconds()));
         pictures.push_back(pictureFigures(files[camera], r));
@@ -386,6 +416,10 @@ void addRender(CLI::App& app, RenderOptions& o) {
         ->type_name("E");
     app.add_option("--size", o.size, "picture size in pixels (default: the camera's extras.resolution, else 1280 wide)")
         ->type_name("WxH");
+    app.add_option("--exposure", o.exposure,
+                   "stops by which the PNG alone is brightened (default 0; with --sky as its light asks for)")
+        ->check(CLI::Range(-100.0, 100.0))
+        ->type_name("STOPS");
     app.add_option("--crop", o.crop, "only these pixels of the picture")->type_name("X0,Y0,X1,Y1");
     app.add_option("--camera", o.settings.camera,
                    "camera by name (default: the first; without one, the scene is framed); all: a picture of each by "
@@ -527,6 +561,7 @@ int parseAndRun(int argc, char** argv) {
         compare.crop = {v[0], v[1], v[2], v[3]};
     }
     if (!common.environment.file.empty()) common.scene.environment = common.environment;
+    if (common.withSky) common.scene.sky = common.sky;
     RunContext run(common.threads, common.seed);
     interruptible = &run;
     ProgressBar bar;

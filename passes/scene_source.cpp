@@ -10,6 +10,11 @@ std::unique_ptr<Scene> loadScene(const std::filesystem::path& file, const SceneS
     options.onWarning = [&run](const std::string& warning) { run.warn(warning); };
     SceneDescription description = loadGltf(file, options);
     if (settings.environment) description.environment = loadEnvironment(*settings.environment);
+    if (settings.sky) {
+        Sky sky = makeSky(*settings.sky);
+        description.environment = std::move(sky.sky);
+        description.sun = std::move(sky.sun);
+    }
     auto scene = std::make_unique<Scene>(std::move(description));
     for (const std::string& warning : scene->description().warnings) run.warn(warning);
     return scene;

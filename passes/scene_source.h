@@ -9,12 +9,14 @@
 #include "scene/environment_file.h"
 #include "scene/gltf.h"
 #include "scene/scene.h"
+#include "scene/sky.h"
 
 namespace lsde {
 
 struct SceneSettings {
     GltfOptions gltf;                                // onWarning is set by the loader
-    std::optional<EnvironmentSettings> environment;  // a picture of what surrounds the scene
+    std::optional<EnvironmentSettings> environment;  // a picture of what surrounds the scene; or
+    std::optional<SkySettings> sky;                  // sun and sky, but not both
 };
 
 // Warnings go to the run. Throws Error naming file, object, value and what was expected.

@@ -212,6 +212,16 @@ class Scenes(Cli):
         self.refused('render', SPHERE, '-o', 'a.exr', '--environment', 'cut.hdr', says=['cut.hdr', 'row 7 is cut short'])
         self.run_lsde('info', SPHERE, '--environment-rotate', 90, code=2)
 
+    def test_sun_and_sky_are_two_lights_and_the_png_is_exposed_for_them(self):
+        figures = json.loads(self.run_lsde('info', SPHERE, '--sky', '--sun-elevation', 30, '--json', '-').stdout)
+        self.assertEqual([(light['name'], light['kind']) for light in figures['lights'][-2:]], [('sky', 'environment'), ('sun', 'sun')])
+        self.run_lsde('reference', SPHERE, '--sky', '-o', 'a.exr', *FAST, '--quiet')
+        self.run_lsde('reference', SPHERE, '--sky', '-o', 'dark.exr', *FAST, '--quiet', '--exposure', -40)
+        self.assertEqual((self.folder / 'a.exr').read_bytes(), (self.folder / 'dark.exr').read_bytes())
+        self.assertGreater((self.folder / 'a.png').stat().st_size, 2 * (self.folder / 'dark.png').stat().st_size)
+        for wrong in [['--turbidity', 4], ['--sky', '--sun-elevation', 91], ['--sky', '--environment', self.sky()]]:
+            self.run_lsde('info', SPHERE, *wrong, code=2)
+
     def test_a_scene_without_a_camera_is_framed(self):
         def change(d):
             del d['cameras']

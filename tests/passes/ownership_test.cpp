@@ -6,28 +6,6 @@
 using namespace lsde;
 using namespace lsde::test;
 
-namespace {
-
-// Blocks agree within five standard errors and the bias that a kernel of some pixels' width is allowed.
-void checkAgreement(const Estimate& a, const Estimate& b, double bias) {
-    REQUIRE(a.mean.size() == b.mean.size());
-    double sumA = 0, sumB = 0, error2 = 0;
-    for (size_t i = 0; i < a.mean.size(); ++i) {
-        CAPTURE(i);
-        CAPTURE(a.mean[i]);
-        CAPTURE(b.mean[i]);
-        CHECK(std::fabs(a.mean[i] - b.mean[i]) <
-              5 * std::hypot(a.error[i], b.error[i]) + bias * std::max(a.mean[i], b.mean[i]) + 1e-5);
-        sumA += a.mean[i];
-        sumB += b.mean[i];
-        error2 += a.error[i] * a.error[i] + b.error[i] * b.error[i];
-    }
-    CAPTURE(sumA / sumB);
-    CHECK(std::fabs(sumA - sumB) < 4 * std::sqrt(error2) + 0.003 * sumB);
-}
-
-}  // namespace
-
 TEST_CASE("a lamp behind a pane, with and without a glass ball: photons agree with path tracing") {
     for (const char* scene : {"pane", "pane-ball"}) {
         CAPTURE(scene);

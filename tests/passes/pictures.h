@@ -1,6 +1,8 @@
 // Rendering the project's scenes small, and holding the pictures against known ones.
 #pragma once
 
+#include <doctest/doctest.h>
+
 #include <cmath>
 #include <map>
 #include <string>
@@ -35,10 +37,13 @@ inline PictureSettings settingsFor(const std::string& integrator, int size, uint
     return s;
 }
 
+inline RenderResult render(const Scene& scene, const PictureSettings& settings, uint64_t seed = 1, int threads = 0) {
+    RunContext run(threads, seed);
+    return renderPicture(scene, integratorByName(settings.integrator), settings, run);
+}
 inline RenderResult render(const std::string& scene, const PictureSettings& settings, uint64_t seed = 1,
                            int threads = 0) {
-    RunContext run(threads, seed);
-    return renderPicture(sceneOf(scene), integratorByName(settings.integrator), settings, run);
+    return render(sceneOf(scene), settings, seed, threads);
 }
 
 // A picture by another program, and two independent halves of it (tests/data/ORIGIN.md).
@@ -83,7 +88,7 @@ inline double noiseCorrectedRelMse(const RgbImage& image, const Truth& truth) {
 struct Estimate {
     std::vector<double> mean, error;
 };
-inline Estimate estimate(const std::string& scene, const PictureSettings& settings, uint64_t seeds, int blocks,
+inline Estimate estimate(const Scene& scene, const PictureSettings& settings, uint64_t seeds, int blocks,
                          const std::string& layer = "") {
     const auto n = static_cast<size_t>(blocks) * static_cast<size_t>(blocks);
     std::vector<double> sum(n), sum2(n);
@@ -108,6 +113,28 @@ inline Estimate estimate(const std::string& scene, const PictureSettings& settin
         e.error.push_back(std::sqrt(std::max(0.0, sum2[i] / k - e.mean[i] * e.mean[i]) / (k - 1)));
     }
     return e;
+}
+inline Estimate estimate(const std::string& scene, const PictureSettings& settings, uint64_t seeds, int blocks,
+                         const std::string& layer = "") {
+    return estimate(sceneOf(scene), settings, seeds, blocks, layer);
+}
+
+// Blocks agree within five standard errors and the bias that a kernel of some pixels' width is allowed.
+inline void checkAgreement(const Estimate& a, const Estimate& b, double bias) {
+    REQUIRE(a.mean.size() == b.mean.size());
+    double sumA = 0, sumB = 0, error2 = 0;
+    for (size_t i = 0; i < a.mean.size(); ++i) {
+        CAPTURE(i);
+        CAPTURE(a.mean[i]);
+        CAPTURE(b.mean[i]);
+        CHECK(std::fabs(a.mean[i] - b.mean[i]) <
+              5 * std::hypot(a.error[i], b.error[i]) + bias * std::max(a.mean[i], b.mean[i]) + 1e-5);
+        sumA += a.mean[i];
+        sumB += b.mean[i];
+        error2 += a.error[i] * a.error[i] + b.error[i] * b.error[i];
+    }
+    CAPTURE(sumA / sumB);
+    CHECK(std::fabs(sumA - sumB) < 4 * std::sqrt(error2) + 0.003 * sumB);
 }
 
 }  // namespace lsde::test

@@ -184,6 +184,7 @@ class SceneBuilder {
             for (Vec3& p : m.positions) p = scale * p + move;
         for (PunctualLight& l : description_.lights) l.position = scale * l.position + move;
     }
+    const SceneDescription& description() const { return description_; }
     std::unique_ptr<Scene> build() const { return std::make_unique<Scene>(description_); }
 
   private:

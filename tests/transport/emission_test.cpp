@@ -223,6 +223,35 @@ TEST_CASE("an even environment's rays go through a small sphere as pi times its 
     }
 }
 
+TEST_CASE("what is learnt of directions changes no flux where the discs of several casters overlap") {
+    const Sphere target{{0, 1, 0}, 0.3F};
+    SceneBuilder builder;
+    builder.add(test::sphere(target.centre, 0.5F, 1), test::metal(0));
+    builder.add(test::sphere(target.centre, 0.9F, 1), test::metal(0));
+    builder.add(test::plate({0, 0, 0}, 2), test::lambert(Rgb(0.5F)));
+    builder.environment(RgbImage(4, 2, Rgb(3)));
+    const auto scene = builder.build();
+    EmissionSampler sources(*scene, test::allLights(*scene), kAimedAtCasters);
+    std::vector<AimTrial> trials;
+    for (uint64_t i = 0; i < 50'000; ++i) {
+        const LightPathStart start = draw(sources, i, 99).start;
+        // In one part the one half of directions is worth more, in the other the other.
+        const bool worth = (start.ray.direction.y > 0) == (start.part == 1);
+        trials.push_back({start.light, start.part, {start.u, worth ? 5.0F : 0.5F}});
+    }
+    sources.learn(trials);
+    test::Mean up, down;
+    for (uint64_t i = 0; i < 200'000; ++i) {
+        const Drawn d = draw(sources, i);
+        const Ray& r = d.start.ray;
+        const bool hit = d.emits && glm::length(glm::cross(r.direction, target.centre - r.origin)) < target.radius;
+        up.add(hit && r.direction.y > 0 ? d.start.power.x : 0);
+        down.add(hit && r.direction.y < 0 ? d.start.power.x : 0);
+    }
+    CHECK(up.agrees(3 * 2 * kPi * kPi * square(target.radius)));
+    CHECK(down.agrees(3 * 2 * kPi * kPi * square(target.radius)));
+}
+
 TEST_CASE("no path weighs more than the whole emission's share allows") {
     for (const Kind kind : kKinds)
         for (const bool contained : {false, true}) {
