@@ -23,6 +23,7 @@ class GeometryLoader {
     GeometryLoader(std::string file, const GltfModel& model, Warnings& warnings)
         : file_(std::move(file)), model_(model), warnings_(warnings) {}
 
+    const GltfModel& model() const { return model_; }
     // Of a mesh, known before any is decoded.
     uint64_t primitives(size_t mesh) const { return model_.meshes[mesh].size(); }
     uint64_t triangles(size_t mesh) const;

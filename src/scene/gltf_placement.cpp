@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "scene/gltf_instances.h"
 #include "scene/gltf_limits.h"
 
 namespace lsde {
@@ -26,10 +29,12 @@ std::vector<NodeMesh> meshesOf(const JsonObject& root, const std::vector<PlacedN
 
 // Nodes cannot share children, but many may show one mesh, and one mesh may be large.
 void checkSceneSize(const JsonObject& root, const std::vector<NodeMesh>& meshes, const GeometryLoader& geometry) {
+    constexpr uint64_t kMany = std::max(kMaxPrimitives, kMaxTriangles) + 1;
     uint64_t primitives = 0, triangles = 0;
     for (const NodeMesh& m : meshes) {
-        primitives += geometry.primitives(m.mesh);
-        triangles += geometry.triangles(m.mesh);
+        const uint64_t instances = std::min(kMany, instanceCount(m.node, geometry.model()));
+        primitives += instances * std::min(kMany, geometry.primitives(m.mesh));
+        triangles += instances * std::min(kMany, geometry.triangles(m.mesh));
         if (primitives > kMaxPrimitives)
             root.fail(fmt::format("the scene's nodes show more than {} primitives", kMaxPrimitives));
         if (triangles > kMaxTriangles)
@@ -50,22 +55,33 @@ class MeshPlacer {
                Warnings& warnings)
         : root_(root), materials_(materials), scene_(scene), warnings_(warnings) {}
 
-    void place(const NodeMesh& nodeMesh, const std::vector<LoadedPrimitive>& primitives) {
+    void place(const NodeMesh& nodeMesh, GeometryLoader& geometry) {
+        const std::vector<glm::dmat4> instances = readInstances(nodeMesh.node, geometry.model());
+        for (const glm::dmat4& instance : instances) {
+            // Instances bound solids of their own.
+            const size_t id = instances.size() == 1 ? nodeMesh.placed.index : root_.size("nodes") + instances_++;
+            placeInstance(nodeMesh, geometry.mesh(nodeMesh.mesh), nodeMesh.placed.world * instance,
+                          static_cast<uint32_t>(id));
+        }
+    }
+
+  private:
+    void placeInstance(const NodeMesh& nodeMesh, const std::vector<LoadedPrimitive>& primitives,
+                       const glm::dmat4& world, uint32_t id) {
         const auto& [placed, node, meshIndex] = nodeMesh;
         const CausticSwitches switches = readSwitches(node, warnings_);
         const std::optional<int> priority = readPriority(node);
         const std::string meshName = root_.json()["meshes"][meshIndex].value("name", "");
-        const glm::dmat3 linear(placed.world);
-        if (glm::determinant(linear) == 0)
+        if (glm::determinant(glm::dmat3(world)) == 0)
             warnings_.add("its matrix is singular: its mesh is flat or empty", node.where());
         for (const LoadedPrimitive& primitive : primitives) {
             const uint32_t material = materialOf(primitive.material);
             checkTexCoords(root_, scene_.materials[material], primitive.data);
-            std::optional<Mesh> mesh = placePrimitive(primitive.data, placed.world, warnings_);
+            std::optional<Mesh> mesh = placePrimitive(primitive.data, world, warnings_);
             if (!mesh) continue;
             mesh->object = objectName(node, meshName, "node", placed.index);
             mesh->material = material;
-            mesh->node = static_cast<uint32_t>(placed.index);
+            mesh->node = id;
             mesh->switches = switches;
             const std::optional<int> p = priority || primitive.material < 0
                                              ? priority
@@ -76,7 +92,6 @@ class MeshPlacer {
         }
     }
 
-  private:
     // The default material comes after the file's own, once a primitive needs it.
     uint32_t materialOf(int index) {
         if (index >= 0) return static_cast<uint32_t>(index);
@@ -88,6 +103,7 @@ class MeshPlacer {
     const std::vector<GltfMaterial>& materials_;
     SceneDescription& scene_;
     Warnings& warnings_;
+    size_t instances_ = 0;  // so far, of nodes that show several
 };
 
 }  // namespace
@@ -98,7 +114,7 @@ void placeMeshes(const JsonObject& root, const std::vector<PlacedNode>& placed,
     const std::vector<NodeMesh> meshes = meshesOf(root, placed);
     checkSceneSize(root, meshes, geometry);
     MeshPlacer placer(root, materials, scene, warnings);
-    for (const NodeMesh& m : meshes) placer.place(m, geometry.mesh(m.mesh));
+    for (const NodeMesh& m : meshes) placer.place(m, geometry);
 }
 
 }  // namespace lsde

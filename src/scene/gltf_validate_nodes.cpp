@@ -33,12 +33,37 @@ void checkTransform(const JsonObject& node) {
     if (q == std::vector<double>(4, 0.0)) node.fail("rotation [0,0,0,0], expected a unit quaternion");
 }
 
+// The formats are the extension's: floats, or normalised signed integers for rotations.
+void checkInstances(const GltfChecks& checks, const JsonObject& node) {
+    const auto extension = node.extension("EXT_mesh_gpu_instancing");
+    if (!extension) return;
+    extension->require("attributes");
+    const JsonObject attributes = extension->object("attributes").value();
+    std::optional<size_t> first;
+    for (const auto& [name, value] : attributes.json().items()) {
+        const size_t index = attributes.reference(name.c_str(), "accessor", checks.accessors.size()).value();
+        const AccessorInfo& a = checks.accessors[index];
+        if (!first) first = index;
+        if (a.count != checks.accessors[*first].count)
+            attributes.fail(fmt::format("{} has {} elements, others have {}", shown(name), a.count,
+                                        checks.accessors[*first].count));
+        const bool isRotation = name == "ROTATION";
+        if (!isRotation && name != "TRANSLATION" && name != "SCALE") continue;
+        const bool isSmall = isRotation && a.normalized && (a.componentType == 5120 || a.componentType == 5122);
+        if (a.type != (isRotation ? "VEC4" : "VEC3") || !(a.componentType == 5126 || isSmall))
+            attributes.fail(fmt::format("{}: accessor {} is {} of componentType {}, expected {} of float", name, index,
+                                        a.type, a.componentType, isRotation ? "VEC4" : "VEC3"));
+        if (!a.hasData) attributes.fail(fmt::format("accessor {} is in a buffer without data", index));
+    }
+}
+
 void checkNode(const GltfChecks& checks, const JsonObject& node) {
     checkTransform(node);
     node.reference("mesh", "mesh", checks.root.size("meshes"));
     node.reference("camera", "camera", checks.root.size("cameras"));
     if (node.reference("skin", "skin", checks.root.size("skins")))
         checks.warnings.add("skinning is not rendered: the mesh is shown at rest", node.where());
+    checkInstances(checks, node);
     if (const auto light = node.extension("KHR_lights_punctual")) {
         light->require("light");
         light->reference("light", "light", lightCount(checks));

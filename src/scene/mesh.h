@@ -36,7 +36,8 @@ struct Mesh {
     std::vector<Vec4> colors;                    // COLOR_0, linear; empty if absent
     std::vector<Triangle> triangles;             // degenerate ones already left out, with a warning
     uint32_t material = 0;
-    uint32_t node = 0;  // index of the node in the file: primitives of one node and material bound one solid
+    // The node in the file, or beyond them an instance: primitives of one and of one material bound one solid.
+    uint32_t node = 0;
     CausticSwitches switches;
     int priority = 0;  // extras.priority of the node or material; larger wins
     bool hasPriority = false;

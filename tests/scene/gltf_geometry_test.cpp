@@ -371,6 +371,39 @@ TEST_CASE("nodes that share a mesh show it in their own places") {
     checkNear(scene.meshes[1].positions[0], {0, 0, 5});
 }
 
+TEST_CASE("a node with instances shows its mesh once for each, as nodes of these transforms would") {
+    GltfFile file = triangleFile();
+    const size_t translation = file.accessor<float>({5, 0, 0, 0, 7, 0}, "VEC3");
+    const size_t rotation = file.accessor<int16_t>({0, 0, 0, 32767, 0, 0, 23170, 23170}, "VEC4", true);
+    const size_t scale = file.accessor<float>({1, 1, 1, 2, 2, -2}, "VEC3");
+    file["/nodes/0/scale"] = {10, 10, 10};
+    file["/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes"] = {
+        {"TRANSLATION", translation}, {"ROTATION", rotation}, {"SCALE", scale}, {"_ID", scale}};
+    file.json["extensionsRequired"] = {"EXT_mesh_gpu_instancing"};
+    const SceneDescription scene = load(file);
+    REQUIRE(scene.meshes.size() == 2);
+    const auto near = [](Vec3 a, Vec3 b) { return glm::length(a - b) < 1e-3F; };
+    CHECK(near(scene.meshes[0].positions[1], {60, 0, 0}));
+    // Turned by 90 degrees about z, doubled, mirrored: the winding is undone.
+    CHECK(near(scene.meshes[1].positions[0], {0, 70, 0}));
+    CHECK(near(scene.meshes[1].positions[1], {0, 90, 0}));
+    CHECK(scene.meshes[1].triangles[0] == Triangle{0, 2, 1});
+    CHECK(scene.meshes[0].object == scene.meshes[1].object);
+    CHECK(scene.meshes[0].node != scene.meshes[1].node);
+
+    GltfFile unequal = file, wrong = file, none = file;
+    unequal["/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes/SCALE"] = 0;
+    CHECK(contains(refusalOf(unequal), "\"SCALE\" has 3 elements, others have 2"));
+    wrong["/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes/SCALE"] = rotation;
+    CHECK(contains(refusalOf(wrong), "SCALE: accessor 3 is VEC4 of componentType 5122, expected VEC3 of float"));
+    none["/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes"] = Json::object();
+    CHECK(load(none).meshes.size() == 1);
+    GltfFile many = file;
+    const size_t zeros = many.add("accessors", {{"componentType", 5126}, {"type", "VEC3"}, {"count", 16'000'000}});
+    many["/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes"] = {{"TRANSLATION", zeros}};
+    CHECK(contains(refusalOf(many), "more than 1000000 primitives"));
+}
+
 TEST_CASE("numbers written with a fraction of zero are whole numbers") {
     GltfFile file = triangleFile();
     for (const char* pointer :

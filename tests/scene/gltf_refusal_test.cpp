@@ -117,9 +117,7 @@ TEST_CASE("a file of another version, or one that requires what is not supported
             {"/asset/minVersion", "2.1", "asset: minVersion \"2.1\", expected at most 2.0"},
             {"/asset", Json::object(), "asset: version is missing"},
             {"/extensionsRequired", {"EXT_unheard_of"}, "extension \"EXT_unheard_of\" is required, but not supported"},
-            {"/extensionsRequired",
-             {"EXT_mesh_features"},
-             "extension \"EXT_mesh_features\" is required"},
+            {"/extensionsRequired", {"EXT_mesh_features"}, "extension \"EXT_mesh_features\" is required"},
         });
     GltfFile required = triangleFile();
     required.json["extensionsRequired"] = {"KHR_materials_volume", "KHR_mesh_quantization"};
