@@ -98,6 +98,10 @@ InfoResult describeScene(const std::filesystem::path& file, const InfoSettings& 
     out.lines.emplace_back(
         "units: metres; one nit, candela, lux = one W/(m2 sr), W/sr, W/m2 per channel (linear Rec. 709)");
     out.lines.push_back(fmt::format("vertex classes: G below roughness {}, D above", kGlossyRoughness));
+    j["variants"] = scene.description().variants;
+    for (const std::string& variant : scene.description().variants)
+        out.lines.push_back(
+            fmt::format("variant \"{}\"{}", variant, variant == settings.scene.gltf.variant ? ": shown" : ""));
     describeLights(scene, out);
     describeCameras(scene, out);
     for (size_t i = 0; i < scene.meshes().size(); ++i)

@@ -69,6 +69,7 @@ struct SceneDescription {
     std::optional<EnvironmentDescription> environment;
     std::optional<SunDescription> sun;
     std::vector<CameraDescription> cameras;  // of the chosen scene
+    std::vector<std::string> variants;       // names of KHR_materials_variants there are
     std::vector<std::string> warnings;       // each one line, already counted
 };
 

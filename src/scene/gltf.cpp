@@ -14,6 +14,7 @@
 #include "scene/gltf_placement.h"
 #include "scene/gltf_textures.h"
 #include "scene/gltf_validate.h"
+#include "scene/gltf_variants.h"
 
 namespace lsde {
 
@@ -27,7 +28,9 @@ SceneDescription load(const std::filesystem::path& file, const GltfOptions& opti
     const JsonObject root(json, "", name);
     const GltfResources resources{root, file.parent_path(), options.allowOutside};
 
+    if (!options.variant.empty()) chooseVariant(json, name, options.variant);
     SceneDescription scene;
+    scene.variants = readVariants(root);
     scene.file = file;
     const std::vector<GltfMaterial> materials = readMaterials(root, warnings);
     for (const GltfMaterial& m : materials) scene.materials.push_back(m.material);

@@ -10,6 +10,7 @@ namespace lsde {
 
 struct GltfOptions {
     std::string scene;          // name or index; empty: the file's default scene, else the first
+    std::string variant;        // of KHR_materials_variants, by name; empty: the file's own materials
     bool allowOutside = false;  // buffers and images outside the scene's folder
     // Gets the warnings of a file that is then refused; those of a file that loads are in the result.
     std::function<void(const std::string&)> onWarning;

@@ -103,6 +103,18 @@ void readEmission(const JsonObject& root, const JsonObject& object, Material& m)
     m.emissiveTexture = readTexture(root, object, "emissiveTexture");
 }
 
+// A colour that no light makes has no place among light paths: it becomes what is nearest to it.
+void readUnlit(const JsonObject& object, Material& m, Warnings& warnings) {
+    if (!object.extension("KHR_materials_unlit")) return;
+    warnings.add("KHR_materials_unlit is rendered as a matte surface of its colour, lit as everything else",
+                 object.where());
+    m.metallic = m.specular = m.transmission = 0;
+    m.roughness = 1;
+    m.metallicRoughnessTexture = m.specularTexture = m.transmissionTexture = {};
+    m.emission = Rgb(0);
+    m.volume.reset();
+}
+
 void readAlpha(const JsonObject& object, Material& m, Warnings& warnings) {
     const std::string mode = object.has("alphaMode") ? object.string("alphaMode") : "OPAQUE";
     if (mode == "MASK")
@@ -134,6 +146,7 @@ GltfMaterial readMaterial(const JsonObject& root, const JsonObject& object, Warn
     readSpecular(root, object, m);
     readTransmission(root, object, m, warnings);
     readEmission(root, object, m);
+    readUnlit(object, m, warnings);
     readAlpha(object, m, warnings);
     warnOfIgnored(object, warnings);
     out.priority = readPriority(object);

@@ -146,15 +146,50 @@ TEST_CASE("what is rendered otherwise than the file says gets one warning, with 
     CHECK(warned(gauze, "material 0: alphaMode BLEND with little alpha is not glass"));
     CHECK(load(triangleFileWith({{"alphaMode", "BLEND"}})).warnings.empty());
     GltfFile file = triangleFile();
-    file.json["extensionsUsed"] = {"KHR_materials_unlit", "KHR_materials_sheen", "KHR_materials_volume"};
+    file.json["extensionsUsed"] = {"KHR_materials_made_up", "KHR_materials_sheen", "KHR_materials_volume"};
     file.json["materials"] = {gauze, gauze, gauze};
     file.json["animations"] = {Json::object()};
     const SceneDescription scene = load(file);
     CHECK(scene.warnings.size() == 4);
-    CHECK(warnsOnce(scene, "scene.gltf: extension \"KHR_materials_unlit\" is ignored"));
+    CHECK(warnsOnce(scene, "scene.gltf: extension \"KHR_materials_made_up\" is ignored"));
     CHECK(warnsOnce(scene, "extension \"KHR_materials_sheen\" is ignored"));
     CHECK(warnsOnce(scene,
                     "material 0: alphaMode BLEND with little alpha is not glass: light passes it unbent (glass "
                     "has KHR_materials_transmission) (3 in all)"));
     CHECK(warnsOnce(scene, "animations are not rendered"));
+}
+
+TEST_CASE("an unlit material is a matte surface of its colour, and says so") {
+    Json unlit = withExtension("unlit", Json::object());
+    unlit["pbrMetallicRoughness"] = {{"baseColorFactor", {0.25, 0.5, 1, 1}}};
+    unlit["emissiveFactor"] = {1, 1, 1};
+    const SceneDescription scene = load(triangleFileWith(unlit));
+    CHECK(warnsOnce(scene, "material \"water\": KHR_materials_unlit is rendered as a matte surface of its colour"));
+    const Material& m = scene.materials[0];
+    CHECK(m.baseColor == Rgb(0.25F, 0.5F, 1));
+    CHECK(m.metallic == 0);
+    CHECK(m.specular == 0);
+    CHECK(!m.emissive());
+}
+
+TEST_CASE("a variant gives meshes its materials, and those that it does not name keep theirs") {
+    GltfFile file = triangleFileWith({{"name", "own"}});
+    file.add("materials", {{"name", "red"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 0, 0, 1}}}}});
+    file.json["extensions"]["KHR_materials_variants"] = {{"variants", {{{"name", "day"}}, {{"name", "dusk"}}}}};
+    file["/meshes/0/primitives/0/extensions/KHR_materials_variants"] = {
+        {"mappings", {{{"material", 1}, {"variants", {1}}}}}};
+    const auto shownMaterial = [&](const std::string& variant) {
+        GltfOptions options;
+        options.variant = variant;
+        const SceneDescription scene = load(file, options);
+        CHECK(scene.variants == std::vector<std::string>{"day", "dusk"});
+        return scene.materials[scene.meshes[0].material].name;
+    };
+    CHECK(shownMaterial("") == "own");
+    CHECK(shownMaterial("day") == "own");
+    CHECK(shownMaterial("dusk") == "red");
+    const std::string said = errorOf([&] { shownMaterial("night"); });
+    CHECK(contains(said, "variant \"night\": does not exist, expected one of: \"day\", \"dusk\""));
+    file["/meshes/0/primitives/0/extensions/KHR_materials_variants/mappings/0/variants/0"] = 2;
+    CHECK(contains(errorOf([&] { shownMaterial("dusk"); }), "mapping 0: variant 2 does not exist (2 variants)"));
 }
