@@ -12,7 +12,7 @@ demo_reference_seconds=${DEMO_REFERENCE_SECONDS:-60} # CPU seconds of the path t
 # Debian 12 packages; README.md says what each is for.
 packages=(
     g++ cmake ninja-build pkg-config python3
-    libembree-dev libopenexr-dev libtinygltf-dev libdraco-dev libmeshoptimizer-dev libflann-dev liblz4-dev libglm-dev libtbb-dev
+    libembree-dev libopenexr-dev libtinygltf-dev libdraco-dev libmeshoptimizer-dev libwebp-dev libflann-dev liblz4-dev libglm-dev libtbb-dev
     libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev libxxhash-dev
     libpng-dev doctest-dev libbenchmark-dev
 )

@@ -31,6 +31,7 @@ OWNERS = [
     (re.compile(r'embree\d*/'), 'src/scene/accel.cpp'),
     (re.compile(r'draco/'), 'src/scene/gltf_draco.cpp'),
     (re.compile(r'meshoptimizer'), 'src/scene/gltf_meshopt.cpp'),
+    (re.compile(r'webp/'), 'src/scene/webp.cpp'),
     (re.compile(r'tiny_gltf'), 'src/scene/gltf_model.cpp'),
     (re.compile(r'flann/'), 'src/photon/flann_index.cpp'),
     (re.compile(r'(OpenEXR/|Imath/|Imf|Imath|Iex|half\.h)'), 'src/image/exr.cpp'),

@@ -50,7 +50,7 @@ SceneDescription load(const std::filesystem::path& file, const GltfOptions& opti
     countOpenEdges(scene.meshes, scene.materials, warnings);
     std::set<uint32_t> used;
     for (const Mesh& mesh : scene.meshes) used.insert(mesh.material);
-    scene.textures = loadTextures(resources, model, scene.materials, used);
+    scene.textures = loadTextures(resources, model, scene.materials, used, warnings);
     return scene;
 }
 

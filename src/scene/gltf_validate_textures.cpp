@@ -52,6 +52,9 @@ void checkTextures(const GltfChecks& checks) {
     for (const JsonObject& sampler : checks.root.objects("samplers", "sampler")) checkSampler(sampler);
     for (const JsonObject& texture : checks.root.objects("textures", "texture")) {
         texture.reference("source", "image", checks.root.size("images"));
+        for (const char* name : {"EXT_texture_webp", "KHR_texture_basisu"})
+            if (const auto extension = texture.extension(name))
+                extension->reference("source", "image", checks.root.size("images"));
         texture.reference("sampler", "sampler", checks.root.size("samplers"));
     }
     for (const JsonObject& material : checks.root.objects("materials", "material", true))

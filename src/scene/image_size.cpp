@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "base/error.h"
+#include "scene/webp.h"
 
 namespace lsde {
 
@@ -49,7 +50,6 @@ ImageSize jpegSize(Bytes bytes) {
 
 std::string nameOfFormat(Bytes bytes) {
     if (startsWith(bytes, "\xABKTX 20\xBB")) return "KTX2";
-    if (startsWith(bytes, "RIFF") && startsWith(bytes, "WEBP", 8)) return "WebP";
     if (startsWith(bytes, "GIF8")) return "GIF";
     if (startsWith(bytes, "BM")) return "BMP";
     if (startsWith(bytes, "DDS ")) return "DDS";
@@ -61,7 +61,8 @@ std::string nameOfFormat(Bytes bytes) {
 ImageSize readImageSize(Bytes bytes) {
     if (startsWith(bytes, "\x89PNG\r\n\x1A\n")) return pngSize(bytes);
     if (startsWith(bytes, "\xFF\xD8\xFF")) return jpegSize(bytes);
-    throw Error(nameOfFormat(bytes) + ", expected PNG or JPEG");
+    if (isWebp(bytes)) return webpSize(bytes);
+    throw Error(nameOfFormat(bytes) + ", expected PNG, JPEG or WebP");
 }
 
 }  // namespace lsde

@@ -10,8 +10,8 @@ struct ImageSize {
     uint32_t width = 0, height = 0;
 };
 
-// Of PNG or JPEG, told by content. Throws Error, without the file's name, for other formats (named if known) and for a
-// header that is cut short or damaged.
+// Of PNG, JPEG or WebP, told by content. Throws Error, without the file's name, for other formats (named if known) and
+// for a header that is cut short or damaged.
 ImageSize readImageSize(std::span<const unsigned char> bytes);
 
 }  // namespace lsde

@@ -156,13 +156,13 @@ TEST_CASE("a picture that is no picture, too large, or of another format is refu
     bomb.replace(16, 8, std::string("\0\0\0\x20\0\0\0\x20", 8));
     CHECK(contains(refusalOf(texturedFile(bomb)), "image 0: cannot be decoded"));
     CHECK(contains(refusalOf(texturedFile(fourTexels().substr(0, 20))), "image 0: its header is cut short"));
-    CHECK(contains(refusalOf(texturedFile("RIFF....WEBPVP8 ")), "image 0: WebP, expected PNG or JPEG"));
-    CHECK(contains(refusalOf(texturedFile("\xABKTX 20\xBB\r\n\x1A\n")), "image 0: KTX2, expected PNG or JPEG"));
-    CHECK(contains(refusalOf(texturedFile("text")), "image 0: an unknown format, expected PNG or JPEG"));
+    CHECK(contains(refusalOf(texturedFile("RIFF....WEBPVP8 ")), "image 0: a WebP picture whose header is damaged"));
+    CHECK(contains(refusalOf(texturedFile("\xABKTX 20\xBB\r\n\x1A\n")), "image 0: KTX2, expected PNG, JPEG or WebP"));
+    CHECK(contains(refusalOf(texturedFile("text")), "image 0: an unknown format, expected PNG, JPEG or WebP"));
     CHECK(contains(refusalOf(texturedFile("\xFF\xD8\xFF\xDA")), "image 0: a damaged JPEG"));
-    GltfFile webp = texturedFile(fourTexels());
-    webp["/textures/0"] = {{"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}};
-    CHECK(contains(refusalOf(webp), "texture 0: no source, expected a PNG or JPEG image"));
+    GltfFile none = texturedFile(fourTexels());
+    none["/textures/0"] = Json::object();
+    CHECK(contains(refusalOf(none), "texture 0: no source, expected a PNG, JPEG or WebP image"));
     GltfFile both = texturedFile(fourTexels());
     both["/images/0/uri"] = "a.png";
     CHECK(contains(refusalOf(both), "image 0: expected either uri or bufferView"));
@@ -170,4 +170,29 @@ TEST_CASE("a picture that is no picture, too large, or of another format is refu
     GltfFile unused = texturedFile("RIFF....WEBPVP8 ");
     unused["/materials/0"] = Json::object();
     CHECK(refusalOf(unused).empty());
+}
+
+TEST_CASE("WebP pictures are decoded, and taken before what is there for those that cannot read them") {
+    GltfFile file = texturedFile(fourTexels());
+    // The same four texels, the blue one half covering, by another encoder.
+    file.add("images",
+             {{"uri", "data:image/webp;base64,UklGRioAAABXRUJQVlA4TB0AAAAvAUAAEB+w/wKCIv9Hm38BQdF1y0U2JWEXIvofAgA="}});
+    file["/textures/0/extensions/EXT_texture_webp/source"] = 1;
+    CHECK(load(file).textures.at(0).rgba ==
+          std::vector<uint8_t>{255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 128, 255, 255, 255, 255});
+    file["/textures/0"].erase("source");
+    CHECK(load(file).textures.at(0).rgba[14] == 255);
+    file["/textures/0/extensions/EXT_texture_webp/source"] = 2;
+    CHECK(contains(refusalOf(file), "texture 0: image 2 does not exist (2 images)"));
+}
+
+TEST_CASE("a KTX2 picture's fallback is taken with a warning; without one the texture is refused") {
+    GltfFile file = texturedFile(fourTexels());
+    file.add("images", {{"bufferView", file.view("\xABKTX 20\xBB\r\n\x1A\n")}, {"mimeType", "image/ktx2"}});
+    file["/textures/0/extensions/KHR_texture_basisu/source"] = 1;
+    const SceneDescription scene = load(file);
+    CHECK(scene.textures.at(0).rgba == load(texturedFile(fourTexels())).textures.at(0).rgba);
+    CHECK(warnsOnce(scene, "texture 0: KTX2 (KHR_texture_basisu) is not supported: its fallback picture is taken"));
+    file["/textures/0"].erase("source");
+    CHECK(contains(refusalOf(file), "texture 0: KTX2 (KHR_texture_basisu) without a fallback"));
 }
