@@ -103,6 +103,9 @@ void addCommon(CLI::App& app, CommonOptions& o, bool scene) {
                  "take buffers and images from outside the scene's folder");
     app.add_option("--scene", o.scene.gltf.scene, "scene within the file, by name or index (default: the file's)")
         ->type_name("NAME");
+    app.add_option("--at", o.scene.gltf.atSeconds,
+                   "the scene where its animations have it at this time (default: at rest)")
+        ->type_name("SEC");
     app.add_option("--variant", o.scene.gltf.variant,
                    "materials of this variant (KHR_materials_variants; info lists them)")
         ->type_name("NAME");

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "scene/gltf_animation.h"
 #include "scene/gltf_attachments.h"
 #include "scene/gltf_compression.h"
 #include "scene/gltf_geometry.h"
@@ -35,15 +36,19 @@ SceneDescription load(const std::filesystem::path& file, const GltfOptions& opti
     const std::vector<GltfMaterial> materials = readMaterials(root, warnings);
     for (const GltfMaterial& m : materials) scene.materials.push_back(m.material);
     const GltfAttachments attachments = readAttachments(root, warnings);
+    GltfBuffers buffers = readBuffers(resources, source);
+    decodeCompressed(json, name, buffers);
+    const GltfModel model = parseModel(root, std::move(buffers));
+    if (options.atSeconds)
+        applyAnimations(json, name, model, *options.atSeconds, warnings);
+    else if (root.size("animations") > 0)
+        warnings.add("animations: shown at rest (--at SEC shows a time)", "");
+
     const size_t index = chooseScene(root, options.scene);
     scene.sceneName = root.objects("scenes", "scene")[index].string("name");
     const std::vector<PlacedNode> placed = placeNodes(root, index, warnings);
     scene.cameras = placeCameras(attachments, root, placed);
     scene.lights = placeLights(attachments, root, placed);
-
-    GltfBuffers buffers = readBuffers(resources, source);
-    decodeCompressed(json, name, buffers);
-    const GltfModel model = parseModel(root, std::move(buffers));
     GeometryLoader geometry(name, model, warnings);
     placeMeshes(root, placed, materials, geometry, scene, warnings);
     if (scene.meshes.empty()) root.fail(fmt::format("scene {}: no triangles to render", index));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "scene/description.h"
@@ -9,9 +10,10 @@
 namespace lsde {
 
 struct GltfOptions {
-    std::string scene;          // name or index; empty: the file's default scene, else the first
-    std::string variant;        // of KHR_materials_variants, by name; empty: the file's own materials
-    bool allowOutside = false;  // buffers and images outside the scene's folder
+    std::string scene;                // name or index; empty: the file's default scene, else the first
+    std::string variant;              // of KHR_materials_variants, by name; empty: the file's own materials
+    std::optional<double> atSeconds;  // where its animations have the scene at this time; none: at rest
+    bool allowOutside = false;        // buffers and images outside the scene's folder
     // Gets the warnings of a file that is then refused; those of a file that loads are in the result.
     std::function<void(const std::string&)> onWarning;
 };

@@ -108,7 +108,7 @@ class DracoDecoder {
     std::span<const unsigned char> viewBytes(const JsonObject& extension) {
         const JsonObject root(json_, "", file_);
         const size_t index = extension.reference("bufferView", "buffer view", root.size("bufferViews")).value();
-        const JsonObject view = root.objects("bufferViews", "buffer view")[index];
+        const JsonObject view(json_["bufferViews"][index], "", file_);
         const size_t buffer = view.reference("buffer", "buffer", buffers_.size()).value();
         return bytesOf(*buffers_[buffer], static_cast<size_t>(view.integer("byteOffset", 0, 0, kMaxFileBytes)),
                        static_cast<size_t>(view.integer("byteLength", 1, 1, kMaxFileBytes)));

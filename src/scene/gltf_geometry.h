@@ -29,19 +29,24 @@ class GeometryLoader {
     uint64_t triangles(size_t mesh) const;
     // The mesh's primitives that make triangles; the others get a warning. Throws Error for an index beyond the
     // vertices, a value that is not finite, or a sparse index out of order.
-    const std::vector<LoadedPrimitive>& mesh(size_t index);
+    // Morphed by the weights of its targets, if there are any.
+    const std::vector<LoadedPrimitive>& mesh(size_t index, const std::vector<double>& weights);
 
   private:
     const GltfAccessor& accessor(int index) const { return model_.accessors[static_cast<size_t>(index)]; }
-    void addPrimitive(std::vector<LoadedPrimitive>& out, const GltfPrimitive& primitive, const std::string& where);
+    void addPrimitive(std::vector<LoadedPrimitive>& out, const GltfPrimitive& primitive,
+                      const std::vector<double>& weights, const std::string& where);
     std::vector<uint32_t> readCorners(const GltfPrimitive& primitive, const std::string& where) const;
-    void readVertices(const GltfPrimitive& primitive, PrimitiveData& data);
+    void readVertices(const GltfPrimitive& primitive, const std::vector<double>& weights, PrimitiveData& data);
+
+    void morph(const std::map<std::string, int>& target, float weight, const std::vector<uint32_t>& vertices,
+               PrimitiveData& data);
 
     std::string file_;
     const GltfModel& model_;
     Warnings& warnings_;
     VertexSelector selector_;
-    std::map<size_t, std::vector<LoadedPrimitive>> meshes_;
+    std::map<std::pair<size_t, std::vector<double>>, std::vector<LoadedPrimitive>> meshes_;  // by mesh and weights
 };
 
 }  // namespace lsde

@@ -45,14 +45,21 @@ Json accessorsFor(const JsonObject& root) {
     return out;
 }
 
+Json wholeNumbers(const Json& object) {
+    Json out = Json::object();
+    for (const auto& [name, index] : object.items()) out[name] = static_cast<uint64_t>(index.get<double>());
+    return out;
+}
+
 Json meshesFor(const JsonObject& root) {
     Json out = Json::array();
     for (const JsonObject& mesh : root.objects("meshes", "mesh")) {
         Json primitives = pickEach(mesh, "primitives", {"indices", "mode", "material"});
         for (size_t i = 0; i < primitives.size(); ++i) {
-            Json& attributes = primitives[i]["attributes"] = Json::object();
-            for (const auto& [name, index] : mesh.json()["primitives"][i]["attributes"].items())
-                attributes[name] = static_cast<uint64_t>(index.get<double>());
+            const Json& from = mesh.json()["primitives"][i];
+            primitives[i]["attributes"] = wholeNumbers(from["attributes"]);
+            if (!from.contains("targets")) continue;
+            for (const Json& target : from["targets"]) primitives[i]["targets"].push_back(wholeNumbers(target));
         }
         out.push_back({{"primitives", std::move(primitives)}});
     }
@@ -138,7 +145,7 @@ GltfModel parseModel(const JsonObject& root, GltfBuffers buffers) {
     for (const tinygltf::Mesh& mesh : parsed.meshes) {
         std::vector<GltfPrimitive>& primitives = model.meshes.emplace_back();
         for (const tinygltf::Primitive& p : mesh.primitives)
-            primitives.push_back({p.mode, p.indices, p.material, p.attributes});
+            primitives.push_back({p.mode, p.indices, p.material, p.attributes, p.targets});
     }
     // Moved, not copied: what was pointed at stays where it is.
     for (tinygltf::Buffer& buffer : parsed.buffers) model.buffers.push_back(std::move(buffer.data));

@@ -14,10 +14,11 @@
 namespace lsde {
 
 struct GltfPrimitive {
-    int mode = 4;                           // 0-3: points and lines; 4-6: PrimitiveMode
-    int indices = -1;                       // accessor; -1: vertices in their order
-    int material = -1;                      // -1: the default material
-    std::map<std::string, int> attributes;  // accessor of each
+    int mode = 4;                                     // 0-3: points and lines; 4-6: PrimitiveMode
+    int indices = -1;                                 // accessor; -1: vertices in their order
+    int material = -1;                                // -1: the default material
+    std::map<std::string, int> attributes;            // accessor of each
+    std::vector<std::map<std::string, int>> targets;  // morph targets: accessor of what is added to each attribute
 };
 
 // Accessors and views point into the buffers.

@@ -57,15 +57,21 @@ class MeshPlacer {
 
     void place(const NodeMesh& nodeMesh, GeometryLoader& geometry) {
         const std::vector<glm::dmat4> instances = readInstances(nodeMesh.node, geometry.model());
+        const std::vector<LoadedPrimitive>& primitives = geometry.mesh(nodeMesh.mesh, morphWeights(nodeMesh));
         for (const glm::dmat4& instance : instances) {
             // Instances bound solids of their own.
             const size_t id = instances.size() == 1 ? nodeMesh.placed.index : root_.size("nodes") + instances_++;
-            placeInstance(nodeMesh, geometry.mesh(nodeMesh.mesh), nodeMesh.placed.world * instance,
-                          static_cast<uint32_t>(id));
+            placeInstance(nodeMesh, primitives, nodeMesh.placed.world * instance, static_cast<uint32_t>(id));
         }
     }
 
   private:
+    // The node's own, else the mesh's.
+    std::vector<double> morphWeights(const NodeMesh& m) const {
+        const JsonObject mesh(root_.json()["meshes"][m.mesh], "", root_.file());
+        const JsonObject& holder = m.node.has("weights") ? m.node : mesh;
+        return holder.numbers("weights", holder.size("weights"), {});
+    }
     void placeInstance(const NodeMesh& nodeMesh, const std::vector<LoadedPrimitive>& primitives,
                        const glm::dmat4& world, uint32_t id) {
         const auto& [placed, node, meshIndex] = nodeMesh;

@@ -120,7 +120,7 @@ Json validateGltf(const std::filesystem::path& file, const GltfSource& source, b
     checkTextures(checks);
     checkMeshes(checks);
     checkNodes(checks);
-    if (checks.root.size("animations") > 0) warnings.add("animations are not rendered", "");
+    checkAnimations(checks);
     return json;
 }
 

@@ -119,6 +119,26 @@ void checkShared(const GltfChecks& checks, const JsonObject& primitive, const st
     }
 }
 
+// Morph targets: what is added to positions and normals, one element for each vertex.
+void checkTargets(const GltfChecks& checks, const JsonObject& primitive,
+                  const std::map<std::string, size_t>& attributes) {
+    for (const JsonObject& target : primitive.objects("targets", "target"))
+        for (const auto& [name, value] : target.json().items()) {
+            const size_t index = target.reference(name.c_str(), "accessor", checks.accessors.size()).value();
+            const AccessorInfo& a = checks.accessors[index];
+            if (name != "POSITION" && name != "NORMAL") continue;
+            const std::string expected = wrongFormat(name, a, checks.uses("KHR_mesh_quantization"));
+            if (!expected.empty())
+                target.fail(fmt::format("{}: accessor {} is {} of componentType {}, expected {}", name, index, a.type,
+                                        a.componentType, expected));
+            const auto base = attributes.find("POSITION");
+            if (base != attributes.end() && a.count != checks.accessors[base->second].count)
+                target.fail(fmt::format("{} has {} elements, but POSITION has {}", name, a.count,
+                                        checks.accessors[base->second].count));
+            checkHasData(checks, primitive, index);
+        }
+}
+
 void checkPrimitive(const GltfChecks& checks, const JsonObject& primitive, ViewUsers& users) {
     primitive.require("attributes");
     primitive.integer("mode", 4, 0, 6);
@@ -129,11 +149,7 @@ void checkPrimitive(const GltfChecks& checks, const JsonObject& primitive, ViewU
     checkShared(checks, primitive, attributes, users);
     if (const auto indices = primitive.reference("indices", "accessor", checks.accessors.size()))
         checkIndices(checks, primitive, *indices, draco.has_value());
-    for (const JsonObject& target : primitive.objects("targets", "target")) {
-        checks.warnings.add("morph targets are not rendered", primitive.where());
-        for (const auto& [name, value] : target.json().items())
-            target.reference(name.c_str(), "accessor", checks.accessors.size());
-    }
+    checkTargets(checks, primitive, attributes);
 }
 
 }  // namespace
@@ -144,6 +160,7 @@ void checkMeshes(const GltfChecks& checks) {
         mesh.require("primitives");
         for (const JsonObject& primitive : mesh.objects("primitives", "primitive"))
             checkPrimitive(checks, primitive, users);
+        mesh.numbers("weights", mesh.size("weights"), {});
     }
 }
 

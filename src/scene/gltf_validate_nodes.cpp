@@ -60,6 +60,7 @@ void checkInstances(const GltfChecks& checks, const JsonObject& node) {
 void checkNode(const GltfChecks& checks, const JsonObject& node) {
     checkTransform(node);
     node.reference("mesh", "mesh", checks.root.size("meshes"));
+    node.numbers("weights", node.size("weights"), {});
     node.reference("camera", "camera", checks.root.size("cameras"));
     if (node.reference("skin", "skin", checks.root.size("skins")))
         checks.warnings.add("skinning is not rendered: the mesh is shown at rest", node.where());

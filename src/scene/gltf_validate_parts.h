@@ -69,4 +69,7 @@ void checkMeshes(const GltfChecks& checks);
 // nodes and scenes: references, and that each node has one parent and is not its own ancestor.
 void checkNodes(const GltfChecks& checks);
 
+// animations: references, and that samplers have as many values of the right kind as their keys ask for.
+void checkAnimations(const GltfChecks& checks);
+
 }  // namespace lsde

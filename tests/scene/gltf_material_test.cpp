@@ -156,7 +156,7 @@ TEST_CASE("what is rendered otherwise than the file says gets one warning, with 
     CHECK(warnsOnce(scene,
                     "material 0: alphaMode BLEND with little alpha is not glass: light passes it unbent (glass "
                     "has KHR_materials_transmission) (3 in all)"));
-    CHECK(warnsOnce(scene, "animations are not rendered"));
+    CHECK(warnsOnce(scene, "animations: shown at rest (--at SEC shows a time)"));
 }
 
 TEST_CASE("an unlit material is a matte surface of its colour, and says so") {
