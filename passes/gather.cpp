@@ -120,7 +120,7 @@ ClassGather::ClassGather(const GatherInput& input, PhotonClass c, IndexKind kind
     maxRadius_ = std::min(maxRadius_, most * std::sqrt(rule.growthAtMean / static_cast<float>(kNear)));
     reach_ = std::min(reach_, most * std::sqrt(rule.reachAtMean / static_cast<float>(kNear)));
     if (progressive.pilot != nullptr) maxRadius_ *= kPilotRadius;
-    extent_ = SurfaceExtent(input.creases, std::max(maxRadius_, reach_));
+    extent_ = SurfaceExtent(input.creases);
     const uint64_t paths = input.map.header.emittedPaths();
     perPath_ = paths > 0 ? 1 / static_cast<double>(paths) : 0;
     if (progressive.pilot == nullptr)

@@ -66,55 +66,82 @@ void cut(Vec2 a, Vec2 b, std::array<float, kDirections>& reach) {
     }
 }
 
-constexpr int kCellBits = 21;
+constexpr size_t kDeepest = 64;  // nodes: halving 2^32 creases
+
+float distanceSquared(const Bounds& b, Vec3 p) {
+    return lengthSquared(glm::max(glm::max(b.lo - p, p - b.hi), Vec3(0)));
+}
+
+// Adds the crease as far as it cuts the disc of `radius` about the centre.
+template <typename Add>
+void cutDisc(const Frame& frame, Vec3 centre, const Segment& crease, float radius, const Add& add) {
+    Vec2 from, to;
+    if (!clipToSlab(frame.toLocal(crease.a - centre), frame.toLocal(crease.b - centre), kPlaneThickness * radius, from,
+                    to))
+        return;
+    // Nearest point of the crease to the centre, along the crease.
+    const Vec2 along = to - from;
+    const float t = std::clamp(-glm::dot(from, along) / std::max(glm::dot(along, along), 1e-20F), 0.0F, 1.0F);
+    const Vec2 nearest = from + t * along;
+    const float nearestSquared = glm::dot(nearest, nearest);
+    if (nearestSquared < square(radius)) add(from, to, nearestSquared);
+}
 
 }  // namespace
 
-SurfaceExtent::SurfaceExtent(std::span<const Segment> creases, float maxRadius)
-    : creases_(creases.begin(), creases.end()), cell_(creases.empty() ? 0 : 2 * maxRadius) {
-    if (!(cell_ > 0)) {
-        cell_ = 0;
+SurfaceExtent::SurfaceExtent(std::span<const Segment> creases) {
+    for (const Segment& s : creases) creases_.push_back({s, 0.5F * (s.a + s.b), 0.5F * glm::length(s.b - s.a)});
+    if (!creases_.empty()) build(0, static_cast<uint32_t>(creases_.size()));
+}
+
+SurfaceExtent::Lanes::Lanes(std::span<const Crease> creases) {
+    for (size_t i = 0; i < creases.size(); ++i) {
+        const auto& [a, b] = creases[i].segment;
+        const Vec3 d = b - a;
+        ax[i] = a.x;
+        ay[i] = a.y;
+        az[i] = a.z;
+        dx[i] = d.x;
+        dy[i] = d.y;
+        dz[i] = d.z;
+        inverse[i] = 1 / std::max(lengthSquared(d), 1e-30F);
+    }
+}
+
+std::array<float, SurfaceExtent::kLanes> SurfaceExtent::Lanes::distancesSquared(Vec3 p) const {
+    std::array<float, kLanes> out;
+    for (size_t i = 0; i < kLanes; ++i) {
+        const float x = p.x - ax[i], y = p.y - ay[i], z = p.z - az[i];
+        const float t = std::min(std::max((x * dx[i] + y * dy[i] + z * dz[i]) * inverse[i], 0.0F), 1.0F);
+        const float qx = x - t * dx[i], qy = y - t * dy[i], qz = z - t * dz[i];
+        out[i] = qx * qx + qy * qy + qz * qz;
+    }
+    return out;
+}
+
+void SurfaceExtent::build(uint32_t begin, uint32_t end) {
+    const size_t at = nodes_.size();
+    nodes_.push_back({{}, begin, end, 0});
+    Bounds middles;
+    for (uint32_t i = begin; i < end; ++i) {
+        nodes_[at].bounds.grow(creases_[i].segment.a);
+        nodes_[at].bounds.grow(creases_[i].segment.b);
+        middles.grow(creases_[i].middle);
+    }
+    if (end - begin <= kLanes) {
+        nodes_[at].leaf = true;
+        nodes_[at].next = static_cast<uint32_t>(lanes_.size());
+        lanes_.emplace_back(std::span(creases_).subspan(begin, end - begin));
         return;
     }
-    std::vector<std::pair<uint64_t, uint32_t>> entries;
-    std::vector<uint64_t> cells;
-    for (uint32_t i = 0; i < creases_.size(); ++i) {
-        cells.clear();
-        cellsNear(creases_[i], maxRadius, cells);
-        for (const uint64_t c : cells) entries.emplace_back(c, i);
-    }
-    std::sort(entries.begin(), entries.end());
-    for (const auto& [cell, crease] : entries) {
-        Range& range = cells_.try_emplace(cell, Range{static_cast<uint32_t>(near_.size()), 0}).first->second;
-        const auto& [a, b] = creases_[crease];
-        near_.push_back({0.5F * (a + b), 0.5F * glm::length(b - a), crease});
-        range.end = static_cast<uint32_t>(near_.size());
-    }
-}
-
-uint64_t SurfaceExtent::cellOf(Vec3 p) const {
-    uint64_t key = 0;
-    // Cells a million apart share a key: their creases are looked at in vain, nothing worse.
-    for (int i = 0; i < 3; ++i)
-        key = (key << kCellBits) |
-              (static_cast<uint64_t>(static_cast<int64_t>(std::floor(p[i] / cell_))) & ((1 << kCellBits) - 1));
-    return key;
-}
-
-void SurfaceExtent::cellsNear(const Segment& crease, float maxRadius, std::vector<uint64_t>& out) const {
-    const float length = glm::length(crease.b - crease.a);
-    const int steps = 1 + static_cast<int>(length / cell_);
-    // Points on the crease are at most half a step (half a cell) from a point looked at.
-    const float margin = maxRadius + 0.5F * length / static_cast<float>(steps);
-    for (int i = 0; i < steps; ++i) {
-        const Vec3 p = crease.a + (crease.b - crease.a) * ((static_cast<float>(i) + 0.5F) / static_cast<float>(steps));
-        // Twice the margin is at most two cells: three points a side meet every cell between.
-        for (int x = -1; x <= 1; ++x)
-            for (int y = -1; y <= 1; ++y)
-                for (int z = -1; z <= 1; ++z) out.push_back(cellOf(p + margin * Vec3(x, y, z)));
-    }
-    std::sort(out.begin(), out.end());
-    out.erase(std::unique(out.begin(), out.end()), out.end());
+    const Vec3 extent = middles.extent();
+    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+    const uint32_t middle = begin + (end - begin) / 2;
+    std::nth_element(creases_.begin() + begin, creases_.begin() + middle, creases_.begin() + end,
+                     [axis](const Crease& x, const Crease& y) { return x.middle[axis] < y.middle[axis]; });
+    build(begin, middle);
+    nodes_[at].next = static_cast<uint32_t>(nodes_.size());
+    build(middle, end);
 }
 
 void SurfaceAround::clear() {
@@ -136,26 +163,33 @@ void SurfaceAround::add(Vec2 a, Vec2 b) {
 
 void SurfaceExtent::around(Vec3 centre, Vec3 normal, float radius, SurfaceAround& out) const {
     out.clear();
-    if (cell_ == 0) return;
-    const auto at = cells_.find(cellOf(centre));
-    if (at == cells_.end()) return;
+    if (nodes_.empty()) return;
     out.frame_ = Frame(normal);
     out.centre_ = centre;
-    for (uint32_t i = at->second.begin; i < at->second.end; ++i) {
-        const Near& near = near_[i];
-        if (lengthSquared(near.middle - centre) > square(radius + near.halfLength)) continue;
-        const Segment& crease = creases_[near.crease];
-        const Vec3 a = out.frame_.toLocal(crease.a - centre), b = out.frame_.toLocal(crease.b - centre);
-        Vec2 from, to;
-        if (!clipToSlab(a, b, kPlaneThickness * radius, from, to)) continue;
-        // Nearest point of the crease to the centre, along the crease.
-        const Vec2 along = to - from;
-        const float t = std::clamp(-glm::dot(from, along) / std::max(glm::dot(along, along), 1e-20F), 0.0F, 1.0F);
-        const Vec2 nearest = from + t * along;
-        const float distanceSquared = glm::dot(nearest, nearest);
-        if (!(distanceSquared < square(radius))) continue;
-        out.add(from, to);
-        out.nearestSquared_ = std::min(out.nearestSquared_, distanceSquared);
+    // In the plane the crease is nearer than the radius, and this far off it; and more than rounding.
+    const float reach = square(radius) * (1 + square(kPlaneThickness)) * 1.001F;
+    std::array<uint32_t, kDeepest> waiting{};
+    size_t count = 1;
+    while (count > 0) {
+        const uint32_t at = waiting[--count];
+        const Node& node = nodes_[at];
+        if (!node.leaf) {
+            if (distanceSquared(node.bounds, centre) > reach) continue;
+            waiting[count++] = node.next;
+            waiting[count++] = at + 1;
+            continue;
+        }
+        const auto distances = lanes_[node.next].distancesSquared(centre);
+        for (uint32_t i = node.begin; i < node.end; ++i) {
+            const Crease& crease = creases_[i];
+            if (distances[i - node.begin] > reach ||
+                lengthSquared(crease.middle - centre) > square(radius + crease.halfLength))
+                continue;
+            cutDisc(out.frame_, centre, crease.segment, radius, [&](Vec2 from, Vec2 to, float nearestSquared) {
+                out.add(from, to);
+                out.nearestSquared_ = std::min(out.nearestSquared_, nearestSquared);
+            });
+        }
     }
 }
 

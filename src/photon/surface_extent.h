@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include "base/bounds.h"
@@ -47,30 +46,37 @@ class SurfaceAround {
 class SurfaceExtent {
   public:
     SurfaceExtent() = default;
-    // No radius will exceed maxRadius (m).
-    SurfaceExtent(std::span<const Segment> creases, float maxRadius);
+    explicit SurfaceExtent(std::span<const Segment> creases);
 
     // normal: of the tangent plane, unit. The result is overwritten, its memory used again.
     void around(Vec3 centre, Vec3 normal, float radius, SurfaceAround& out) const;
 
   private:
-    struct Range {
-        uint32_t begin = 0, end = 0;
-    };
-    uint64_t cellOf(Vec3 p) const;
-    // Cells within maxRadius of the crease, perhaps some more.
-    void cellsNear(const Segment& crease, float maxRadius, std::vector<uint64_t>& out) const;
-
-    std::vector<Segment> creases_;
-    float cell_ = 0;                             // m; 0: there are no creases
-    std::unordered_map<uint64_t, Range> cells_;  // ranges of near_
-    // Creases within maxRadius of a cell, each within a sphere.
-    struct Near {
+    struct Crease {
+        Segment segment;
         Vec3 middle{0};
         float halfLength = 0;
-        uint32_t crease = 0;
     };
-    std::vector<Near> near_;
+    static constexpr size_t kLanes = 8;
+    // The creases of a leaf, for their distance from a point; beyond the last one the lanes mean nothing.
+    struct Lanes {
+        std::array<float, kLanes> ax{}, ay{}, az{}, dx{}, dy{}, dz{};  // from a, d on to b
+        std::array<float, kLanes> inverse{};                           // 1 / d^2
+        explicit Lanes(std::span<const Crease> creases);
+        std::array<float, kLanes> distancesSquared(Vec3 p) const;
+    };
+    // A tree of boxes over the creases: a node's first child follows it, the second is at `next`; a leaf's lanes are.
+    struct Node {
+        Bounds bounds;
+        uint32_t begin = 0, end = 0;  // of creases_
+        uint32_t next = 0;
+        bool leaf = false;
+    };
+    void build(uint32_t begin, uint32_t end);
+
+    std::vector<Crease> creases_;
+    std::vector<Lanes> lanes_;
+    std::vector<Node> nodes_;
 };
 
 }  // namespace lsde

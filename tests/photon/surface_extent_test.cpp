@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "photon/kernel.h"
+#include "support/random.h"
 
 using namespace lsde;
 
@@ -14,7 +15,7 @@ const std::vector<Segment> kSquare = {
 
 SurfaceAround around(Vec3 p, float radius) {
     SurfaceAround out;
-    SurfaceExtent(kSquare, 1).around(p, {0, 0, 1}, radius, out);
+    SurfaceExtent(kSquare).around(p, {0, 0, 1}, radius, out);
     return out;
 }
 
@@ -67,7 +68,40 @@ TEST_CASE("a photon behind a crease is hidden, one before it or beside it is not
     CHECK(!surface.hides({5.3F, 0.01F, 0}));
     const std::vector<Segment> wall = {{{0, 0, 0}, {1, 0, 0}}};
     SurfaceAround beside;
-    SurfaceExtent(wall, 1).around({1.1F, 0.1F, 0}, {0, 0, 1}, 0.5F, beside);
+    SurfaceExtent(wall).around({1.1F, 0.1F, 0}, {0, 0, 1}, 0.5F, beside);
     CHECK(!beside.hides({1.2F, -0.1F, 0}));
     CHECK(beside.hides({0.8F, -0.1F, 0}));
+}
+
+TEST_CASE("among thousands of creases those that cut the disc are found, and they alone") {
+    test::Random random(21);
+    const auto at = [&](float scale) {
+        return scale * (Vec3(random.uniform(), random.uniform(), random.uniform()) - 0.5F);
+    };
+    std::vector<Segment> creases;
+    for (int i = 0; i < 3000; ++i) {
+        const Vec3 a = at(10);
+        creases.push_back({a, a + at(i % 10 == 0 ? 5.0F : 0.3F)});
+    }
+    const SurfaceExtent extent(creases);
+    int cut = 0;
+    for (int i = 0; i < 300; ++i) {
+        const Vec3 centre = at(12), normal = glm::normalize(at(1));
+        const float radius = 0.05F + random.uniform();
+        SurfaceAround all;
+        extent.around(centre, normal, radius, all);
+        bool whole = true;
+        float least = 1;
+        for (const Segment& crease : creases) {
+            SurfaceAround one;
+            SurfaceExtent(std::span(&crease, 1)).around(centre, normal, radius, one);
+            whole &= one.whole();
+            least = std::min(least, one.share(radius));
+        }
+        CHECK(all.whole() == whole);
+        CHECK(all.share(radius) <= least);
+        cut += all.whole() ? 0 : 1;
+    }
+    CHECK(cut > 50);
+    CHECK(cut < 250);
 }
