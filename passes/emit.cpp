@@ -94,17 +94,4 @@ PhotonMap emitPhotons(const Scene& scene, const EmitSettings& settings, RunConte
     return emission.finish(settings.photons, run);
 }
 
-std::string whyNoCaustics(const Scene& scene, const Ledger* ledger) {
-    if (scene.lights().empty()) return "no caustics here: the scene has no lights";
-    const bool anyCaster =
-        std::any_of(scene.meshes().begin(), scene.meshes().end(), [](const MeshInfo& m) { return m.caster; });
-    if (!anyCaster)
-        return fmt::format(
-            "no caustics here: nothing in the scene is specular (no mirror, no glass, no roughness below {})",
-            kGlossyRoughness);
-    if (ledger != nullptr && ledger->landed[static_cast<size_t>(PhotonClass::Caustic)] == 0)
-        return "no caustics here: no light arrived at a diffuse surface by way of a specular one";
-    return {};
-}
-
 }  // namespace lsde

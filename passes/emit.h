@@ -59,7 +59,4 @@ class Emission {
 // `interrupted` set: its ranges say how far it got.
 PhotonMap emitPhotons(const Scene& scene, const EmitSettings& settings, RunContext& run, bool* interrupted = nullptr);
 
-// "no caustics here: ..." with the reason, or empty. Warned by emit and render, told by info.
-std::string whyNoCaustics(const Scene& scene, const Ledger* ledger);
-
 }  // namespace lsde

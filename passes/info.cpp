@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "image/exr.h"
 #include "passes/emit.h"
+#include "passes/explain.h"
 #include "photon/map_file.h"
 #include "scene/scene.h"
 
@@ -109,10 +110,10 @@ InfoResult describeScene(const std::filesystem::path& file, const InfoSettings& 
             out.lines.push_back(
                 fmt::format("caster \"{}\": material \"{}\"", scene.description().meshes[i].object,
                             scene.description().materials[scene.description().meshes[i].material].name));
-    if (const std::string why = whyNoCaustics(scene, nullptr); !why.empty()) {
-        out.lines.push_back(why);
-        j["noCaustics"] = why;
-    }
+    const Explanation explanation = explainByPilot(scene, run);
+    out.lines.push_back(explanation.text);
+    j["explanation"] = explanation.json();
+    if (!explanation.noCaustics.empty()) j["noCaustics"] = explanation.noCaustics;
     return out;
 }
 

@@ -15,6 +15,7 @@
 #include "image/png.h"
 #include "passes/compare.h"
 #include "passes/emit.h"
+#include "passes/explain.h"
 #include "passes/info.h"
 #include "passes/integrators/registry.h"
 #include "passes/progress_bar.h"
@@ -235,9 +236,15 @@ int runEmit(EmitOptions& o, const CommonOptions& common, RunContext& run) {
         const PhaseTimer timer(run, "write map");
         writePhotonMap(o.output, map, run);
     }
-    if (const std::string why = whyNoCaustics(*scene, &map.header.ledger); !why.empty()) run.warn(why);
+    const Explanation explanation =
+        explain(*scene, scene->lightSelection(o.settings.lights), map.header.ledger, map.header.emittedPaths());
+    if (explanation.noCaustics.empty())
+        run.info(explanation.text);
+    else
+        run.warn(explanation.text);
     Json j = runFigures(run);
     j.update(emitFigures(map, o.output));
+    j["explanation"] = explanation.json();
     writeJson(common.json, j);
     run.info(fmt::format("{}: {} paths, {} caustic photons, {} bytes, {:.1f} CPU s", o.output.string(),
                          map.header.emittedPaths(), map.photons(PhotonClass::Caustic).count, fs::file_size(o.output),

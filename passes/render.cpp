@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "passes/clock.h"
+#include "passes/explain.h"
 #include "passes/map_source.h"
 #include "passes/picture.h"
 #include "passes/scene_source.h"
@@ -221,7 +222,8 @@ class Render {
         result_.photons += map.header.emittedPaths();
         result_.storedPhotons += map.photons(PhotonClass::Caustic).count;
         result_.storedIndirect += map.photons(PhotonClass::Indirect).count;
-        if (const std::string why = whyNoCaustics(scene_, &map.header.ledger); !why.empty()) noCaustics_ = why;
+        const Explanation e = explain(scene_, selected_, map.header.ledger, map.header.emittedPaths());
+        if (!e.noCaustics.empty()) noCaustics_ = e.noCaustics;
     }
 
     GatherInput gatherInput(const PhotonMap& map) {

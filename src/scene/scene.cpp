@@ -21,15 +21,14 @@ float meshArea(const Mesh& mesh) {
     return static_cast<float>(area);
 }
 
-// Whether light leaves this material by an event of class Bend or Glossy (path/event.h).
+}  // namespace
+
 bool hasNarrowLobe(const Material& m) {
     if (m.transmission > 0) return true;
     const bool glossy = m.metallic > 0 || m.metallicRoughnessTexture || m.specular > 0;
     const bool narrow = m.roughness < kGlossyRoughness || m.metallicRoughnessTexture;
     return glossy && narrow;
 }
-
-}  // namespace
 
 Scene::Scene(SceneDescription description)
     : description_(std::move(description)),

@@ -109,6 +109,9 @@ class Scene {
     bool hasThinWalls_ = false;
 };
 
+// Whether light leaves this material by an event of class Bend or Glossy (path/event.h).
+bool hasNarrowLobe(const Material& material);
+
 // XXH3-128 of all that a map depends on, as 32 hexadecimal digits.
 std::string hashDescription(const SceneDescription& description);
 

@@ -230,8 +230,11 @@ class Scenes(Cli):
         self.run_lsde('render', self.glb(change), '-o', 'a.exr', *FAST, *MAP_PHOTONS, '--no-cache')
 
     def test_no_caustics_says_why_and_writes_a_valid_map(self):
-        result = self.run_lsde('emit', SCENES / 'lights.glb', '-o', 'a.lsmap', *MAP_PHOTONS)
+        result = self.run_lsde('emit', SCENES / 'lights.glb', '-o', 'a.lsmap', *MAP_PHOTONS, '--json', '-')
         self.assertIn('no caustics here: ', result.stderr)
+        self.assertEqual(json.loads(result.stdout)['explanation']['reason'], 'nothingSpecular')
+        told = json.loads(self.run_lsde('info', SPHERE, '--json', '-').stdout)['explanation']
+        self.assertEqual((told['reason'], told['lights'], told['casters'], told['receivers']), ('thereAre', ['light'], ['sphere'], ['floor']))
         self.run_lsde('info', 'a.lsmap', '--verify')
 
     def test_an_unknown_camera_and_an_unknown_light_list_those_there_are(self):
