@@ -40,10 +40,11 @@ EnvironmentMap::EnvironmentMap(RgbImage image, float turn) : image_(std::move(im
         const auto weights = rowWeights(y, height);
         for (int x = 0; x < width; ++x) {
             glm::dvec3 texelSum(0);
-            for (int dy = -1; dy <= 1; ++dy)
-                texelSum += weights[static_cast<size_t>(dy + 1)] *
-                            (0.125 * glm::dvec3(texel(x - 1, y + dy)) + 0.75 * glm::dvec3(texel(x, y + dy)) +
-                             0.125 * glm::dvec3(texel(x + 1, y + dy)));
+            for (size_t k = 0; k < weights.size(); ++k) {
+                const int row = y - 1 + static_cast<int>(k);
+                texelSum += weights[k] * (0.125 * glm::dvec3(texel(x - 1, row)) + 0.75 * glm::dvec3(texel(x, row)) +
+                                          0.125 * glm::dvec3(texel(x + 1, row)));
+            }
             texelSum *= 2 * std::numbers::pi / width;
             sum += texelSum;
             luminances[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)] =
