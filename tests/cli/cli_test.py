@@ -181,6 +181,24 @@ class Scenes(Cli):
             next(m for m in d['materials'] if 'KHR_materials_ior' in m['extensions'])['extensions']['KHR_materials_ior']['ior'] = 0.2
         self.refused('render', self.glb(change), '-o', 'a.exr', says=['ior', '0.2', 'expected'])
 
+    def test_variant_and_time_make_another_scene_only_where_they_change_it(self):
+        def change(document):
+            document['extensions'] = document.get('extensions', {}) | {'KHR_materials_variants': {'variants': [{'name': 'day'}, {'name': 'dusk'}]}}
+            floor = document['meshes'][0]['primitives'][0]
+            other = (floor['material'] + 1) % len(document['materials'])
+            floor['extensions'] = {'KHR_materials_variants': {'mappings': [{'material': other, 'variants': [1]}]}}
+        scene = self.glb(change)
+
+        def described(*arguments):
+            return json.loads(self.run_lsde('info', scene, *arguments, '--json', '-').stdout)
+        plain = described()
+        self.assertEqual(plain['variants'], ['day', 'dusk'])
+        self.assertEqual(described('--variant', 'day', '--at', '2.5')['hash'], plain['hash'])
+        self.assertNotEqual(described('--variant', 'dusk')['hash'], plain['hash'])
+        self.refused('render', scene, '-o', 'a.exr', '--variant', 'night', says=['night', 'day', 'dusk'])
+        self.refused('emit', SPHERE, '-o', 'a.lsmap', '--variant', 'day', says='has none')
+        self.run_lsde('info', scene, '--at', 'noon', code=2)
+
     def test_a_scene_without_light_is_refused_by_render_and_reported_by_info(self):
         def change(d):
             for material in d['materials']:

@@ -107,6 +107,29 @@ TEST_CASE("KHR_texture_transform moves, turns and scales, and may choose another
                    "texCoord 2, expected a whole number in [0, 1]"));
 }
 
+TEST_CASE("each use of a texture has its own set and transform") {
+    const auto use = [](double offset) {
+        return Json{{"index", 0},
+                    {"texCoord", 0},
+                    {"extensions", {{"KHR_texture_transform", {{"offset", {offset, 0}}, {"texCoord", 1}}}}}};
+    };
+    GltfFile file = texturedFile(fourTexels());
+    file["/meshes/0/primitives/0/attributes/TEXCOORD_1"] = file["/meshes/0/primitives/0/attributes/TEXCOORD_0"];
+    file["/materials/0"] = {
+        {"pbrMetallicRoughness", {{"baseColorTexture", use(1)}, {"metallicRoughnessTexture", use(2)}}},
+        {"emissiveTexture", use(3)},
+        {"extensions",
+         {{"KHR_materials_transmission", {{"transmissionFactor", 0}, {"transmissionTexture", use(4)}}},
+          {"KHR_materials_specular", {{"specularTexture", use(5)}, {"specularColorTexture", use(6)}}}}}};
+    const Material m = load(file).materials[0];
+    float expected = 1;
+    for (const TextureRef* ref : {&m.baseColorTexture, &m.metallicRoughnessTexture, &m.emissiveTexture,
+                                  &m.transmissionTexture, &m.specularTexture, &m.specularColorTexture}) {
+        CHECK(ref->offset == Vec2(expected++, 0));
+        CHECK(ref->texCoord == 1);
+    }
+}
+
 TEST_CASE("a primitive without the texture coordinates that its material uses is refused") {
     GltfFile file = texturedFile(fourTexels(), {{"index", 0}, {"texCoord", 1}});
     CHECK(contains(refusalOf(file), "mesh 0 primitive 0: no TEXCOORD_1, which its material \"\" uses"));
