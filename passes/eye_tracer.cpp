@@ -225,9 +225,6 @@ void EyeTracer::addPhotons(const Vertex& v, const EyePath& path, EyeScratch& scr
     const bool glossyIsWide = glossy && glossyClass(v.bsdf) == VertexClass::Diffuse;
     const bool glossyGathers = glossy && !glossyIsWide && path.walk.gathers(VertexClass::Glossy);
     if (!diffuse && !glossyIsWide && !glossyGathers) return;
-    EyePathState diffuseMask = path.mask, glossyMask = path.mask;
-    layers_.filter().prepend(diffuseMask, Event::Diffuse);
-    layers_.filter().prepend(glossyMask, Event::Glossy);
     PhotonGatherQuery query;
     query.point = {v.surface.position, v.surface.ng, v.surface.ns, path.metDiffuse ? 0 : path.width};
     query.sideNormal = v.sideNormal();
@@ -235,33 +232,50 @@ void EyeTracer::addPhotons(const Vertex& v, const EyePath& path, EyeScratch& scr
     query.glossyOnly = !diffuse && !glossyIsWide;
     query.glossyFromAll = glossyIsWide;
     query.glossyFromFlagged = glossyGathers;
-    const auto add = [&](const ClassGather& from, const GatheredLight& light) {
-        ++scratch.counters.gathers;
-        scratch.counters.gathered += light.photons;
-        // The full picture gets the sum over all photons, which does not depend on how layers group them.
-        const Rgb before = scratch.sums.layer[0];
-        if (!layers_.hasOnly()) scratch.sums.addFull(path.state.throughput * light.total);
-        for (const GatheredPaths& g : light.paths) {
-            const Rgb fromDiffuse = path.state.throughput * g.diffuse, fromGlossy = path.state.throughput * g.glossy;
-            const auto& state = from.groups().state(g.group);
-            if (!state) {
-                if (!layers_.hasOnly())
-                    scratch.sums.layer[static_cast<size_t>(layers_.unclassified())] += fromDiffuse + fromGlossy;
-                continue;
-            }
-            if (!isBlack(fromDiffuse)) scratch.sums.contributeToLayers(layers_, fromDiffuse, *state, diffuseMask);
-            if (!isBlack(fromGlossy)) scratch.sums.contributeToLayers(layers_, fromGlossy, *state, glossyMask);
-        }
-        // Of --only's paths as much of it as they have of the light.
-        const float of = luminance(path.state.throughput * light.total);
-        const float share = of > 0 ? std::clamp(luminance(scratch.sums.layer[0] - before) / of, 0.0F, 1.0F) : 0;
-        scratch.sums.photonVariance += share * mean(square(path.state.throughput) * light.variance);
-    };
-    if (layers_.causticCounts(diffuseMask) || layers_.causticCounts(glossyMask))
-        add(photons_->caustic(), photons_->caustic().gather(query, v.bsdf, v.frame, v.wo, scratch.gather));
-    if (!path.endsAtDiffuse || !layers_.indirectCounts(diffuseMask)) return;
+    addGathered(photons_->caustic(), query, v, path, scratch);
+    if ((glossyIsWide || glossyGathers) && glossyLobePasses(v.bsdf)) {
+        PhotonGatherQuery through = query;
+        through.sideNormal = -query.sideNormal;
+        through.medium = v.media(true).dominant(scene_.media());
+        through.glossyOnly = !glossyIsWide;
+        addGathered(photons_->caustic(), through, v, path, scratch);
+    }
+    if (!path.endsAtDiffuse) return;
     query.glossyFromAll = query.glossyFromFlagged = false;
-    add(*photons_->indirect(), photons_->indirect()->gather(query, v.bsdf, v.frame, v.wo, scratch.gather));
+    addGathered(*photons_->indirect(), query, v, path, scratch);
+}
+
+// Light of a class of photons at the vertex, towards the eye.
+void EyeTracer::addGathered(const ClassGather& from, const PhotonGatherQuery& query, const Vertex& v,
+                            const EyePath& path, EyeScratch& scratch) const {
+    EyePathState diffuseMask = path.mask, glossyMask = path.mask;
+    layers_.filter().prepend(diffuseMask, Event::Diffuse);
+    layers_.filter().prepend(glossyMask, Event::Glossy);
+    const bool counts = &from == &photons_->caustic()
+                            ? layers_.causticCounts(diffuseMask) || layers_.causticCounts(glossyMask)
+                            : layers_.indirectCounts(diffuseMask);
+    if (!counts) return;
+    const GatheredLight& light = from.gather(query, v.bsdf, v.frame, v.wo, scratch.gather);
+    ++scratch.counters.gathers;
+    scratch.counters.gathered += light.photons;
+    // The full picture gets the sum over all photons, which does not depend on how layers group them.
+    const Rgb before = scratch.sums.layer[0];
+    if (!layers_.hasOnly()) scratch.sums.addFull(path.state.throughput * light.total);
+    for (const GatheredPaths& g : light.paths) {
+        const Rgb fromDiffuse = path.state.throughput * g.diffuse, fromGlossy = path.state.throughput * g.glossy;
+        const auto& state = from.groups().state(g.group);
+        if (!state) {
+            if (!layers_.hasOnly())
+                scratch.sums.layer[static_cast<size_t>(layers_.unclassified())] += fromDiffuse + fromGlossy;
+            continue;
+        }
+        if (!isBlack(fromDiffuse)) scratch.sums.contributeToLayers(layers_, fromDiffuse, *state, diffuseMask);
+        if (!isBlack(fromGlossy)) scratch.sums.contributeToLayers(layers_, fromGlossy, *state, glossyMask);
+    }
+    // Of --only's paths as much of it as they have of the light.
+    const float of = luminance(path.state.throughput * light.total);
+    const float share = of > 0 ? std::clamp(luminance(scratch.sums.layer[0] - before) / of, 0.0F, 1.0F) : 0;
+    scratch.sums.photonVariance += share * mean(square(path.state.throughput) * light.variance);
 }
 
 // Goes on from the vertex: all delta lobes as branches while there are splits left, else one sampled lobe. False: the

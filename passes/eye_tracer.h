@@ -63,6 +63,8 @@ class EyeTracer {
     void addDirect(const Vertex& v, EyePath& path, EyeScratch& scratch) const;
     bool indirectFromMap(const Vertex& v) const;
     void addPhotons(const Vertex& v, const EyePath& path, EyeScratch& scratch) const;
+    void addGathered(const ClassGather& from, const PhotonGatherQuery& query, const Vertex& v, const EyePath& path,
+                     EyeScratch& scratch) const;
     bool split(const Vertex& v, EyePath& path, EyeScratch& scratch) const;
     bool bounce(const Vertex& v, EyePath& path, EyeScratch& scratch) const;
     bool passStraight(const Vertex& v, EyePath& path) const;

@@ -72,7 +72,15 @@ struct Receiver {
     const Bsdf& bsdf;
     const Frame& frame;
     Vec3 wo;
+    bool passes;  // its glossy lobe
 };
+
+// Whether neither direction's shading side is the other of its geometric one: reflected light would count as light that
+// went through.
+bool sidesAgree(const Receiver& at, Vec3 direction, Vec3 wi) {
+    const Vec3 ng = at.query.point.ng;
+    return glm::dot(direction, ng) * wi.z > 0 && glm::dot(at.frame.toWorld(at.wo), ng) * at.wo.z > 0;
+}
 
 // Adds one photon's light by lobe; that of a Lambertian surface without its albedo / pi.
 void scatterPhoton(const PhotonPayload& p, float kernel, const Receiver& at, GatheredPaths& out,
@@ -89,10 +97,11 @@ void scatterPhoton(const PhotonPayload& p, float kernel, const Receiver& at, Gat
         if (wi.z * at.wo.z > 0) out.diffuse += power;
         return;
     }
+    if (at.passes && !sidesAgree(at, direction, wi)) return;
     const BsdfEval f = evalBsdf(at.bsdf, at.wo, wi);
     if (!at.query.glossyOnly) out.diffuse += power * f.diffuse.f;
     if (at.query.glossyFromAll || (at.query.glossyFromFlagged && (p.flags & kGlossyGather) != 0))
-        out.glossy += power * f.glossy.f;
+        out.glossy += power * f.glossy.f / square(f.eta);
 }
 
 PathGroups groupsOf(const GatherInput& input, const PhotonTreeView& tree, RunContext& run) {
@@ -180,7 +189,7 @@ const GatheredLight& ClassGather::gather(const PhotonGatherQuery& query, const B
     out.paths.clear();
     out.total = out.variance = Rgb(0);
     out.photons = 0;
-    if (empty() || glm::dot(query.sideNormal, frame.toWorld(wo)) <= 0) return out;
+    if (empty() || glm::dot(query.sideNormal, frame.toWorld(wo)) == 0) return out;
     DensityQuery density = densityQuery(query, scratch);
     if (known(query, density, bsdf, wo, scratch)) return out;
     const SurfaceAround& surface = scratch.surface;
@@ -189,6 +198,7 @@ const GatheredLight& ClassGather::gather(const PhotonGatherQuery& query, const B
     density.balanced = surface.whole();
     const auto* diffuse = std::get_if<DiffuseBsdf>(&bsdf);
     const bool flat = diffuse != nullptr && glm::dot(query.point.ng, query.point.ns) > kFlat;
+    const Receiver receiver{query, bsdf, frame, wo, glossyLobePasses(bsdf)};
     GatheredPaths total;
     Rgb squares(0);
     const auto take = [&](uint32_t i, float kernel) {
@@ -204,7 +214,7 @@ const GatheredLight& ClassGather::gather(const PhotonGatherQuery& query, const B
         if (flat)
             light.diffuse = unpackPower(p.power) * kernel;
         else
-            scatterPhoton(p, kernel, {query, bsdf, frame, wo}, light, scratch);
+            scatterPhoton(p, kernel, receiver, light, scratch);
         at->diffuse += light.diffuse;
         at->glossy += light.glossy;
         total.diffuse += light.diffuse;

@@ -15,9 +15,9 @@ namespace lsde {
 enum class IndexKind : uint8_t { Kd, Flann };
 
 struct PhotonGatherQuery {
-    SurfacePoint point;  // footprint 0: as small a radius as holds enough photons
-    Vec3 sideNormal{0};  // ng on wo's side
-    MediumId medium = kOutside;
+    SurfacePoint point;              // footprint 0: as small a radius as holds enough photons
+    Vec3 sideNormal{0};              // ng on the side from which the light came: wo's, or the other if it went through
+    MediumId medium = kOutside;      // on that side
     bool glossyOnly = false;         // only photons flagged for Glossy vertices are of use
     bool glossyFromAll = false;      // the glossy lobe takes every photon (it is of class Diffuse)
     bool glossyFromFlagged = false;  // the glossy lobe takes flagged photons

@@ -27,12 +27,12 @@ def emitter(radiance, albedo=0):
     return material | dict(emissiveFactor=[1, 1, 1])
 
 
-def glass(ior, absorption=None):
+def glass(ior, absorption=None, roughness=0):
     """A solid; absorption is (colour, metres after which that colour is left)."""
     volume = dict(thicknessFactor=1)  # any value > 0 says solid
     if absorption:
         volume |= dict(attenuationColor=list(absorption[0]), attenuationDistance=absorption[1])
-    return _material((1, 1, 1), roughness=0, transmission=dict(transmissionFactor=1), ior=dict(ior=ior), volume=volume)
+    return _material((1, 1, 1), roughness=roughness, transmission=dict(transmissionFactor=1), ior=dict(ior=ior), volume=volume)
 
 
 def thin_glass(r, g, b):

@@ -36,7 +36,8 @@ Rgb interfaceAlbedo(float eta, Rgb tint) {
 BsdfEval evalBsdf(const Bsdf& bsdf, Vec3 wo, Vec3 wi) {
     return std::visit(
         Overloaded{[&](const DiffuseBsdf& b) { return b.eval(wo, wi); },
-                   [&](const MetalRoughBsdf& b) { return b.eval(wo, wi); }, [](const auto&) { return BsdfEval{}; }},
+                   [&](const MetalRoughBsdf& b) { return b.eval(wo, wi); },
+                   [&](const TransmissiveBsdf& b) { return b.eval(wo, wi); }, [](const auto&) { return BsdfEval{}; }},
         bsdf);
 }
 
@@ -44,6 +45,7 @@ bool sampleBsdf(const Bsdf& bsdf, Vec3 wo, float uLobe, Vec2 u, BsdfSample& samp
     if (wo.z == 0) return false;
     return std::visit(Overloaded{[&](const DiffuseBsdf& b) { return b.sample(wo, u, sample); },
                                  [&](const MetalRoughBsdf& b) { return b.sample(wo, uLobe, u, sample); },
+                                 [&](const TransmissiveBsdf& b) { return b.sample(wo, uLobe, u, sample); },
                                  [&](const auto&) { return sampleDelta(deltaLobes(bsdf, wo), uLobe, sample); }},
                       bsdf);
 }
@@ -58,7 +60,7 @@ DeltaLobes deltaLobes(const Bsdf& bsdf, Vec3 wo) {
     const auto both = [&](const auto& b) { out.count = b.lobes(wo, out.lobe.data()); };
     std::visit(Overloaded{[&](const MirrorBsdf& b) { reflection(b); }, [&](const MetalRoughBsdf& b) { reflection(b); },
                           [&](const DielectricBsdf& b) { both(b); }, [&](const ThinDielectricBsdf& b) { both(b); },
-                          [](const auto&) {}},
+                          [&](const TransmissiveBsdf& b) { both(b); }, [](const auto&) {}},
                bsdf);
     return out;
 }
@@ -67,33 +69,47 @@ bool sampleNonDelta(const Bsdf& bsdf, Vec3 wo, float uLobe, Vec2 u, BsdfSample& 
     if (wo.z == 0) return false;
     return std::visit(Overloaded{[&](const DiffuseBsdf& b) { return b.sample(wo, u, sample); },
                                  [&](const MetalRoughBsdf& b) { return b.sampleNonDelta(wo, uLobe, u, sample); },
+                                 [&](const TransmissiveBsdf& b) { return b.sampleNonDelta(wo, uLobe, u, sample); },
                                  [](const auto&) { return false; }},
                       bsdf);
 }
 
 bool hasDelta(const Bsdf& bsdf) {
-    return std::visit(Overloaded{[](const BlackBsdf&) { return false; }, [](const DiffuseBsdf&) { return false; },
-                                 [](const MetalRoughBsdf& b) { return b.hasGlossy() && b.glossyIsDelta(); },
-                                 [](const auto&) { return true; }},
-                      bsdf);
+    return std::visit(
+        Overloaded{[](const BlackBsdf&) { return false; }, [](const DiffuseBsdf&) { return false; },
+                   [](const MetalRoughBsdf& b) { return b.hasGlossy() && b.glossyIsDelta(); },
+                   [](const TransmissiveBsdf& b) { return b.isDelta(); }, [](const auto&) { return true; }},
+        bsdf);
 }
 
 bool hasDiffuseLobe(const Bsdf& bsdf) {
     return std::visit(
         Overloaded{[](const DiffuseBsdf&) { return true; }, [](const MetalRoughBsdf& b) { return b.hasDiffuse(); },
-                   [](const auto&) { return false; }},
+                   [](const TransmissiveBsdf& b) { return b.hasDiffuse(); }, [](const auto&) { return false; }},
         bsdf);
 }
 
 bool hasGlossyLobe(const Bsdf& bsdf) {
-    const auto* b = std::get_if<MetalRoughBsdf>(&bsdf);
-    return b != nullptr && b->hasGlossy() && !b->glossyIsDelta();
+    return std::visit(
+        Overloaded{[](const MetalRoughBsdf& b) { return b.hasGlossy() && !b.glossyIsDelta(); },
+                   [](const TransmissiveBsdf& b) { return !b.isDelta(); }, [](const auto&) { return false; }},
+        bsdf);
+}
+
+bool glossyLobePasses(const Bsdf& bsdf) {
+    const auto* b = std::get_if<TransmissiveBsdf>(&bsdf);
+    return b != nullptr && !b->isDelta();
 }
 
 VertexClass glossyClass(const Bsdf& bsdf) {
-    const auto* b = std::get_if<MetalRoughBsdf>(&bsdf);
-    if (b == nullptr || b->roughness >= kGlossyRoughness) return VertexClass::Diffuse;
-    return b->glossyIsDelta() ? VertexClass::Bend : VertexClass::Glossy;
+    const auto classOfRoughness = [](const auto& b) {
+        if (b.roughness >= kGlossyRoughness) return VertexClass::Diffuse;
+        return b.roughness == 0 ? VertexClass::Bend : VertexClass::Glossy;
+    };
+    return std::visit(Overloaded{[&](const MetalRoughBsdf& b) { return classOfRoughness(b); },
+                                 [&](const TransmissiveBsdf& b) { return classOfRoughness(b); },
+                                 [](const auto&) { return VertexClass::Diffuse; }},
+                      bsdf);
 }
 
 VertexClass classOf(const Bsdf& bsdf, const BsdfSample& sample) {
@@ -101,12 +117,20 @@ VertexClass classOf(const Bsdf& bsdf, const BsdfSample& sample) {
     return sample.event == Event::Glossy ? glossyClass(bsdf) : VertexClass::Diffuse;
 }
 
+Rgb straightTransmittance(const Bsdf& bsdf, float cosTheta) {
+    return std::visit(Overloaded{[&](const ThinDielectricBsdf& b) { return b.transmittance(cosTheta); },
+                                 [&](const TransmissiveBsdf& b) { return b.straightTransmittance(cosTheta); },
+                                 [](const auto&) { return Rgb(0); }},
+                      bsdf);
+}
+
 Rgb albedo(const Bsdf& bsdf) {
     return std::visit(Overloaded{[](const BlackBsdf&) { return Rgb(0); }, [](const DiffuseBsdf& b) { return b.albedo; },
                                  [](const MirrorBsdf& b) { return b.f0; },
                                  [](const DielectricBsdf& b) { return interfaceAlbedo(b.eta, b.tint); },
                                  [](const ThinDielectricBsdf& b) { return interfaceAlbedo(b.ior, b.tint); },
-                                 [](const MetalRoughBsdf& b) { return b.albedo(); }},
+                                 [](const MetalRoughBsdf& b) { return b.albedo(); },
+                                 [](const TransmissiveBsdf& b) { return b.albedo(); }},
                       bsdf);
 }
 

@@ -15,14 +15,16 @@
 #include "bsdf/dielectric.h"
 #include "bsdf/diffuse.h"
 #include "bsdf/metal_rough.h"
+#include "bsdf/transmissive.h"
 #include "path/event.h"
 
 namespace lsde {
 
-using Bsdf = std::variant<BlackBsdf, DiffuseBsdf, MirrorBsdf, DielectricBsdf, ThinDielectricBsdf, MetalRoughBsdf>;
+using Bsdf = std::variant<BlackBsdf, DiffuseBsdf, MirrorBsdf, DielectricBsdf, ThinDielectricBsdf, MetalRoughBsdf,
+                          TransmissiveBsdf>;
 
-// f of each non-delta lobe (1/sr, no cosine), with the densities that sampleBsdf() has for wi given wo, and for wo
-// given wi. Densities include the probability of choosing the lobe.
+// f of each non-delta lobe (1/sr, no cosine; for power from wo to wi, see BsdfEval), with the densities that
+// sampleBsdf() has for wi given wo, and for wo given wi. Densities include the probability of choosing the lobe.
 BsdfEval evalBsdf(const Bsdf& bsdf, Vec3 wo, Vec3 wi);
 
 // Draws one lobe and a direction. uLobe chooses the lobe. False: absorbed, no direction.
@@ -43,9 +45,12 @@ bool sampleNonDelta(const Bsdf& bsdf, Vec3 wo, float uLobe, Vec2 u, BsdfSample& 
 bool hasDelta(const Bsdf& bsdf);
 bool hasDiffuseLobe(const Bsdf& bsdf);
 bool hasGlossyLobe(const Bsdf& bsdf);
+bool glossyLobePasses(const Bsdf& bsdf);  // the glossy lobe goes through the surface as well
 // Vertex class of a lobe (path/event.h): a Glossy event of roughness >= kGlossyRoughness is of class Diffuse.
 VertexClass glossyClass(const Bsdf& bsdf);
 VertexClass classOf(const Bsdf& bsdf, const BsdfSample& sample);
+// What a thin wall lets pass unbent at an angle with the normal; 0 of anything else.
+Rgb straightTransmittance(const Bsdf& bsdf, float cosTheta);
 // Reflectance for the albedo layer (diffuse + specular at normal incidence; what interfaces transmit counts as well);
 // in [0,1] each.
 Rgb albedo(const Bsdf& bsdf);

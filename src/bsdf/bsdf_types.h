@@ -12,9 +12,13 @@ struct LobeEval {
     float reversePdfW = 0;  // 1/sr, of wo given wi, likewise
 };
 
+// f is that of power on its way from wo to wi: what a photon that came from wo carries on. For radiance that arrives
+// from wi and goes to wo, as a path from the eye asks for it, f / eta^2 (Veach 1997, section 5.2): at a refraction
+// f(wo, wi) = eta^2 f(wi, wo).
 struct BsdfEval {
     LobeEval diffuse;
     LobeEval glossy;
+    float eta = 1;  // refractive index on wi's side over that on wo's side; 1 where both are on one side
 };
 
 struct BsdfSample {
@@ -36,7 +40,7 @@ inline void choose(BsdfSample& sample, float p, float pReverse) {
     sample.reversePdfW *= pReverse;
 }
 
-// A perfect reflection as the only choice there is.
+// A perfect reflection, or a transmission to wi, as the only choice there is.
 inline BsdfSample deltaReflection(Vec3 wo, Rgb reflectance) {
     BsdfSample s;
     s.wi = {-wo.x, -wo.y, wo.z};
@@ -44,6 +48,17 @@ inline BsdfSample deltaReflection(Vec3 wo, Rgb reflectance) {
     s.pdfW = s.reversePdfW = 1;
     s.event = Event::Specular;
     s.delta = true;
+    return s;
+}
+
+inline BsdfSample deltaTransmission(Vec3 wi, Rgb transmittance, float eta) {
+    BsdfSample s;
+    s.wi = wi;
+    s.weight = transmittance;
+    s.pdfW = s.reversePdfW = 1;
+    s.eta = eta;
+    s.event = Event::Specular;
+    s.delta = s.transmitted = true;
     return s;
 }
 

@@ -4,21 +4,6 @@
 
 namespace lsde {
 
-namespace {
-
-BsdfSample deltaTransmission(Vec3 wi, Rgb transmittance, float eta) {
-    BsdfSample s;
-    s.wi = wi;
-    s.weight = transmittance;
-    s.pdfW = s.reversePdfW = 1;
-    s.eta = eta;
-    s.event = Event::Specular;
-    s.delta = s.transmitted = true;
-    return s;
-}
-
-}  // namespace
-
 int DielectricBsdf::lobes(Vec3 wo, BsdfSample* out) const {
     const float etaT = wo.z > 0 ? eta : 1 / eta;
     const FresnelSplit split = fresnelDielectric(std::fabs(wo.z), etaT);

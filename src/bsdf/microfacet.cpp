@@ -18,6 +18,8 @@ float Ggx::visibility(Vec3 wo, Vec3 wi) const { return 1 / (stretch(wo) * stretc
 
 Vec3 Ggx::sampleHalf(Vec3 wo, Vec2 u) const { return sampleGgxVisibleNormal(wo, alpha_, alpha_, u); }
 
+float Ggx::visibleNormalPdf(Vec3 wo, Vec3 h, float cosO) const { return 2 * d(h) * cosO / stretch(wo); }
+
 float Ggx::reflectionPdf(Vec3 wo, Vec3 h) const { return d(h) / (2 * stretch(wo)); }
 
 }  // namespace lsde

@@ -20,6 +20,8 @@ class Ggx {
 
     // Half vector from the normals visible from wo (Heitz 2018).
     Vec3 sampleHalf(Vec3 wo, Vec2 u) const;
+    // 1/sr of such an h, where cosO = wo.h > 0: G1(wo) D(h) cosO / cos(wo).
+    float visibleNormalPdf(Vec3 wo, Vec3 h, float cosO) const;
     // 1/sr of the reflection of wo about such an h: G1(wo) D(h) / (4 cos(wo)).
     float reflectionPdf(Vec3 wo, Vec3 h) const;
 

@@ -84,15 +84,10 @@ void readTransmission(const JsonObject& root, const JsonObject& object, Material
         m.transmissionTexture = readTexture(root, *transmission, "transmissionTexture");
     }
     readVolume(root, object, m);
-    if (!(m.transmission > 0)) return;
-    if (m.metallic == 1 && !m.metallicRoughnessTexture) {
+    if (m.transmission > 0 && m.metallic == 1 && !m.metallicRoughnessTexture) {
         warnings.add("transmission has no effect on a metal (metallicFactor is 1 unless given)", object.where());
         m.transmission = 0;
-        return;
     }
-    if (m.transmission < 1 || m.transmissionTexture)
-        warnings.add("partial transmission is rendered as transmission 1", object.where());
-    if (m.roughness > 0) warnings.add("rough transmission is rendered smooth", object.where());
 }
 
 void readEmission(const JsonObject& root, const JsonObject& object, Material& m) {

@@ -24,8 +24,7 @@ float meshArea(const Mesh& mesh) {
 }  // namespace
 
 bool hasNarrowLobe(const Material& m) {
-    if (m.transmission > 0) return true;
-    const bool glossy = m.metallic > 0 || m.metallicRoughnessTexture || m.specular > 0;
+    const bool glossy = m.metallic > 0 || m.metallicRoughnessTexture || m.specular > 0 || m.transmission > 0;
     const bool narrow = m.roughness < kGlossyRoughness || m.metallicRoughnessTexture;
     return glossy && narrow;
 }
@@ -171,18 +170,11 @@ Bsdf Scene::bsdf(const Surface& s, float iorFront, float iorBack) const {
     const Material& m = material(s);
     Rgb baseColor = m.baseColor * vertexColor(s);
     if (m.baseColorTexture) baseColor *= Vec3(sample(s, m.baseColorTexture, true));
-    if (m.isSolid()) return DielectricBsdf{iorBack / iorFront, baseColor};
-    if (m.isThinWall()) return ThinDielectricBsdf{m.ior, baseColor};
+    if (m.transmission > 0) return transmissiveBsdf(s, baseColor, iorBack / iorFront);
 
     MetalRoughBsdf b;
     b.baseColor = baseColor;
-    b.metallic = m.metallic;
-    b.roughness = m.roughness;
-    if (m.metallicRoughnessTexture) {
-        const Vec4 texel = sample(s, m.metallicRoughnessTexture, false);
-        b.roughness *= texel.y;
-        b.metallic *= texel.z;
-    }
+    metallicRoughness(s, b.metallic, b.roughness);
     b.specular = m.specular;
     if (m.specularTexture) b.specular *= sample(s, m.specularTexture, false).w;
     if (b.metallic == 0 && b.specular == 0) {
@@ -190,12 +182,48 @@ Bsdf Scene::bsdf(const Surface& s, float iorFront, float iorBack) const {
         return DiffuseBsdf{baseColor};
     }
     if (b.metallic == 1 && b.roughness == 0) return MirrorBsdf{baseColor};
-    Rgb specularColor = m.specularColor;
-    if (m.specularColorTexture) specularColor *= Vec3(sample(s, m.specularColorTexture, true));
     // ior 0 stands for an infinite one (KHR_materials_ior): F0 = 1.
     const float f0 = m.ior == 0 ? 1 : square((m.ior - 1) / (m.ior + 1));
-    b.dielectricF0 = glm::min(f0 * specularColor, Rgb(1));
+    b.dielectricF0 = glm::min(f0 * specularColor(s), Rgb(1));
     return b;
+}
+
+Bsdf Scene::transmissiveBsdf(const Surface& s, Rgb baseColor, float eta) const {
+    // Interfaces of nearly equal refractive indices are told from smooth ones neither by what is seen through them nor
+    // by floats, which do not resolve their half vectors.
+    constexpr float kNoInterface = 1e-3F;
+    const Material& m = material(s);
+    TransmissiveBsdf b;
+    b.thin = m.isThinWall();
+    b.eta = b.thin ? m.ior : eta;
+    b.baseColor = baseColor;
+    metallicRoughness(s, b.metallic, b.roughness);
+    if (!b.thin && std::fabs(eta - 1) < kNoInterface) b.roughness = 0;
+    b.transmission = m.transmission;
+    if (m.transmissionTexture) b.transmission *= sample(s, m.transmissionTexture, false).x;
+    b.specular = m.specular;
+    if (m.specularTexture) b.specular *= sample(s, m.specularTexture, false).w;
+    b.specularColor = specularColor(s);
+    const bool clear = b.transmission == 1 && b.metallic == 0 && b.specular == 1 && b.specularColor == Rgb(1);
+    if (!clear || b.roughness > 0) return b;
+    if (b.thin) return ThinDielectricBsdf{b.eta, baseColor};
+    return DielectricBsdf{b.eta, baseColor};
+}
+
+void Scene::metallicRoughness(const Surface& s, float& metallic, float& roughness) const {
+    const Material& m = material(s);
+    metallic = m.metallic;
+    roughness = m.roughness;
+    if (!m.metallicRoughnessTexture) return;
+    const Vec4 texel = sample(s, m.metallicRoughnessTexture, false);
+    roughness *= texel.y;
+    metallic *= texel.z;
+}
+
+Rgb Scene::specularColor(const Surface& s) const {
+    const Material& m = material(s);
+    if (!m.specularColorTexture) return m.specularColor;
+    return m.specularColor * Vec3(sample(s, m.specularColorTexture, true));
 }
 
 Rgb Scene::emission(const Surface& s, Vec3 leaving) const {

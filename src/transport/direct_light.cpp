@@ -23,7 +23,7 @@ DirectLight sampleDirectLight(const Scene& scene, const LightChoice& lights, con
     if (isBlack(v.transmittance)) return out;
     out.straightPassages = v.straightPassages;
     const float pdf = sample.pdfW * lights.probability(index);
-    const Rgb arriving = sample.radiance * v.transmittance * (std::fabs(wi.z) / pdf);
+    const Rgb arriving = sample.radiance * v.transmittance * (std::fabs(wi.z) / (pdf * square(f.eta)));
     const float others = light.isDelta() ? 0 : query.bsdfSamples;
     if (diffuse) out.diffuse = arriving * f.diffuse.f * powerHeuristic(pdf, others * f.diffuse.pdfW);
     if (glossy) out.glossy = arriving * f.glossy.f * powerHeuristic(pdf, others * f.glossy.pdfW);

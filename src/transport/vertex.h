@@ -18,6 +18,10 @@ struct Vertex {
     float distance = 0;          // m travelled to get here
     bool interface = false;      // bounds a solid
 
+    // The solids around light on wo's side, or around what goes through the surface.
+    const MediaStack& media(bool through) const { return through && interface ? behind : before; }
+    // Whether a direction (world) is on the other side than wo.
+    bool isThrough(Vec3 wi) const { return glm::dot(wi, surface.ng) * glm::dot(woWorld, surface.ng) < 0; }
     // The geometric normal on wo's side.
     Vec3 sideNormal() const { return glm::dot(surface.ng, woWorld) < 0 ? -surface.ng : surface.ng; }
 };

@@ -52,8 +52,7 @@ bool sidesAgree(const Surface& s, Vec3 direction) { return glm::dot(direction, s
 // Transmittance of a smooth thin wall along a straight passage; 0 of anything else.
 Rgb straightTransmittance(const Scene& scene, const Surface& s, Vec3 direction) {
     if (!scene.material(s).isThinWall() || !sidesAgree(s, direction)) return Rgb(0);
-    const Bsdf bsdf = scene.bsdf(s, 1, 1);
-    return std::get<ThinDielectricBsdf>(bsdf).transmittance(std::fabs(glm::dot(s.ns, direction)));
+    return straightTransmittance(scene.bsdf(s, 1, 1), std::fabs(glm::dot(s.ns, direction)));
 }
 
 // The rest of the segment from p along wi, from a surface on it. The origin moves off the surface but the end stays:
@@ -124,7 +123,7 @@ bool scatter(const Vertex& vertex, const BsdfSample& sample, Quantity quantity, 
     else
         path.throughput *= std::fabs((vertex.wo.z * wiNg) / (woNg * sample.wi.z));
     if (isBlack(path.throughput) || !isFinite(path.throughput)) return false;
-    path.media = sample.transmitted && vertex.interface ? vertex.behind : vertex.before;
+    path.media = vertex.media(sample.transmitted);
     path.ray = {offsetOrigin(s.position, s.ng, wi, s.epsilon), wi, kInfinity};
     return true;
 }
@@ -148,7 +147,8 @@ Visibility visibility(const Scene& scene, const Vertex& from, Vec3 wi, float dis
         }
         v.transmittance = tint;
     }
-    if (from.before.size() > 0) v.transmittance *= absorption(scene, from.before, distance);
+    const MediaStack& media = from.media(from.isThrough(wi));
+    if (media.size() > 0) v.transmittance *= absorption(scene, media, distance);
     return v;
 }
 

@@ -32,8 +32,9 @@ bool advance(const Scene& scene, PathState& path, Vertex& vertex, WalkScratch& s
 bool scatter(const Vertex& vertex, const BsdfSample& sample, Quantity quantity, PathState& path);
 
 // Light along a segment that starts at a vertex: 0 if something is in the way before `distance` (m; may be infinite);
-// smooth thin walls tint it and are counted (each is an S of the path); the medium at the vertex absorbs. Surfaces that
-// cover only part dim it by what they are expected to cover or, where there are thin walls too, are there or not.
+// smooth thin walls tint it and are counted (each is an S of the path); the medium on its side of the vertex absorbs.
+// Surfaces that cover only part dim it by what they are expected to cover or, where there are thin walls too, are there
+// or not.
 struct Visibility {
     Rgb transmittance{0};
     int straightPassages = 0;

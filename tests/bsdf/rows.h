@@ -38,6 +38,20 @@ inline const std::vector<BsdfRow>& bsdfRows() {
         {"no coat", MetalRoughBsdf{kTint, kF0, 0, 0, 0.5F}},
         {"smooth plastic", MetalRoughBsdf{kTint, kF0, 1, 0, 0}},
         {"smooth half metal", MetalRoughBsdf{kTint, kF0, 1, 0.5F, 0}},
+        {"ground glass", TransmissiveBsdf{.roughness = 0.35F}},
+        {"rough glass", TransmissiveBsdf{.roughness = 0.5F}},
+        {"rough glass from within", TransmissiveBsdf{.eta = 1 / 1.5F, .roughness = 0.5F}},
+        {"roughest tinted diamond", TransmissiveBsdf{.baseColor = kTint, .eta = 2.4F, .roughness = 1}},
+        {"rough pane", TransmissiveBsdf{.roughness = 0.4F, .thin = true}},
+        {"rough tinted pane", TransmissiveBsdf{.baseColor = kTint, .roughness = 0.8F, .thin = true}},
+        {"milky glass", TransmissiveBsdf{.baseColor = kTint, .roughness = 0.4F, .transmission = 0.6F}},
+        {"smooth milky glass", TransmissiveBsdf{.baseColor = kTint, .transmission = 0.6F}},
+        {"milky pane", TransmissiveBsdf{.baseColor = kTint, .roughness = 0.3F, .transmission = 0.5F, .thin = true}},
+        {"smooth milky pane", TransmissiveBsdf{.baseColor = kTint, .transmission = 0.5F, .thin = true}},
+        {"half metal glass",
+         TransmissiveBsdf{.baseColor = kTint, .roughness = 0.4F, .transmission = 0.7F, .metallic = 0.5F}},
+        {"glass of tinted, weak reflection",
+         TransmissiveBsdf{.specularColor = kTint, .specular = 0.5F, .eta = 1.8F, .roughness = 0.4F}},
     };
     return rows;
 }

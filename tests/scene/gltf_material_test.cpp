@@ -136,11 +136,6 @@ TEST_CASE("what is rendered otherwise than the file says gets one warning, with 
     const auto warned = [](const Json& material, const char* text) {
         return warnsOnce(load(triangleFileWith(material)), text);
     };
-    Json rough = withExtension("transmission", {{"transmissionFactor", 1}});
-    rough["pbrMetallicRoughness"] = {{"metallicFactor", 0}, {"roughnessFactor", 0.5}};
-    CHECK(warned(rough, "material \"water\": rough transmission is rendered smooth"));
-    rough["extensions"]["KHR_materials_transmission"]["transmissionFactor"] = 0.5;
-    CHECK(warned(rough, "partial transmission is rendered as transmission 1"));
     CHECK(warned(withExtension("transmission", {{"transmissionFactor", 1}}), "transmission has no effect on a metal"));
     const Json gauze = {{"alphaMode", "BLEND"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 0.1}}}}};
     CHECK(warned(gauze, "material 0: alphaMode BLEND with little alpha is not glass"));

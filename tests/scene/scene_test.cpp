@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include "base/error.h"
+#include "path/event.h"
 #include "scene/creases.h"
 #include "support/random.h"
 #include "support/scenes.h"
@@ -51,7 +52,8 @@ SceneDescription someScene() {
 }
 
 // A scene of one square from (0,0,0) to (1,1,0), hit from +z at (x, y).
-Bsdf bsdfAt(const Material& material, const std::vector<Texture>& textures = {}, float x = 0.25F) {
+Bsdf bsdfAt(const Material& material, const std::vector<Texture>& textures = {}, float x = 0.25F,
+            float iorBehind = 1.5F) {
     SceneDescription d;
     Mesh m = quad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0});
     m.texCoords[0] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
@@ -61,7 +63,7 @@ Bsdf bsdfAt(const Material& material, const std::vector<Texture>& textures = {},
     const Scene scene(std::move(d));
     Hit hit;
     REQUIRE(scene.accel().intersect({{x, 0.4F, 1}, {0, 0, -1}, kInfinity}, hit));
-    return scene.bsdf(scene.surface(hit), 1, 1.5F);
+    return scene.bsdf(scene.surface(hit), 1, iorBehind);
 }
 
 Texture twoTexels(std::initializer_list<uint8_t> rgba) {
@@ -160,6 +162,41 @@ TEST_CASE("a material becomes the Bsdf that its factors and textures make at the
     CHECK(std::get<MetalRoughBsdf>(bsdfAt(plastic)).dielectricF0.x == 1);
 }
 
+TEST_CASE("glass that is not clear and smooth keeps its roughness, its diffuse base and its reflectance") {
+    Material m = glass(1.5F);
+    m.roughness = 0.4F;
+    m.baseColor = Rgb(0.9F);
+    const auto rough = std::get<TransmissiveBsdf>(bsdfAt(m));
+    CHECK(rough.eta == 1.5F);
+    CHECK(rough.roughness == 0.4F);
+    CHECK(rough.baseColor == Rgb(0.9F));
+    CHECK(rough.transmission == 1);
+    CHECK_FALSE(rough.thin);
+    m.volume.reset();
+    m.ior = 1.7F;
+    m.transmission = 0.5F;
+    m.transmissionTexture.texture = 0;
+    m.specular = 0.25F;
+    m.specularColor = Rgb(2, 1, 0);
+    const auto pane = std::get<TransmissiveBsdf>(bsdfAt(m, {twoTexels({102, 9, 9, 9, 0, 0, 0, 0})}));
+    CHECK(pane.thin);
+    CHECK(pane.eta == 1.7F);
+    CHECK(pane.transmission == doctest::Approx(0.5 * 0.4));
+    CHECK(pane.specular == 0.25F);
+    CHECK(pane.specularColor == Rgb(2, 1, 0));
+    // Where textures leave it clear and smooth it is a smooth interface; so is one between media of one index, rough or
+    // not.
+    Material textured = glass(1.5F);
+    textured.roughness = 1;
+    textured.metallicRoughnessTexture.texture = 0;
+    const std::vector<Texture> textures = {twoTexels({0, 0, 0, 0, 0, 128, 0, 0})};
+    CHECK(std::holds_alternative<DielectricBsdf>(bsdfAt(textured, textures, 0.25F)));
+    CHECK(std::get<TransmissiveBsdf>(bsdfAt(textured, textures, 0.75F)).roughness == doctest::Approx(128.0 / 255));
+    Material none = glass(1);
+    none.roughness = 0.5F;
+    CHECK(std::get<DielectricBsdf>(bsdfAt(none, {}, 0.25F, 1)).eta == 1);
+}
+
 TEST_CASE("textures and vertex colours multiply the factors: colours by their sRGB curve, data as they are") {
     Material m;
     m.baseColor = Rgb(0.5F);
@@ -220,6 +257,11 @@ TEST_CASE("casters are what bends light or is glossy, unless switched off") {
     CHECK(casters(metal(0)) == std::pair(true, size_t{1}));
     CHECK(casters(metal(0.2F)) == std::pair(true, size_t{1}));
     CHECK(casters(metal(0.3F)) == std::pair(false, size_t{0}));
+    for (const float roughness : {0.2F, 0.3F}) {
+        Material rough = glass(1.5F);
+        rough.roughness = roughness;
+        CHECK(casters(rough).first == (roughness < kGlossyRoughness));
+    }
     CHECK(casters(glass(1.5F), {.casts = false}) == std::pair(false, size_t{0}));
     CHECK(casters(glass(1.5F), {.receives = false}) == std::pair(true, size_t{1}));
     CHECK(casters(glass(1.5F), {.aim = false}) == std::pair(true, size_t{0}));

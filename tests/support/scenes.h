@@ -103,6 +103,7 @@ inline Material metal(float roughness, Rgb f0 = Rgb(1)) {
 inline Material glass(float ior, VolumeProperties volume = {}) {
     Material m;
     m.metallic = 0;
+    m.roughness = 0;
     m.ior = ior;
     m.transmission = 1;
     m.volume = volume;
@@ -177,6 +178,16 @@ class SceneBuilder {
     // A disc of light in the sky, seen in direction `towards`.
     void sunDisc(Vec3 towards, float angularRadiusDeg, Rgb radiance) {
         description_.sun = SunDescription{"sun", glm::normalize(towards), angularRadiusDeg * kPi / 180, radiance};
+    }
+    void camera(Vec3 eye, Vec3 target, float yfovDeg) {
+        CameraDescription c;
+        c.name = "camera";
+        c.yfov = yfovDeg * kPi / 180;
+        c.position = eye;
+        c.back = glm::normalize(eye - target);
+        c.right = glm::normalize(glm::cross(Vec3(0, 1, 0), c.back));
+        c.up = glm::cross(c.back, c.right);
+        description_.cameras.push_back(c);
     }
     // All positions times `scale`, then moved. Intensities stay: what is compared must be geometry.
     void transform(float scale, Vec3 move) {

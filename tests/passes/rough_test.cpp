@@ -1,0 +1,100 @@
+// Rough glass and rough metal, across the roughness at which vertices change their class: photons against methods that
+// share none of their estimates.
+#include <doctest/doctest.h>
+
+#include "passes/pictures.h"
+#include "support/scenes.h"
+
+using namespace lsde;
+using namespace lsde::test;
+
+namespace {
+
+Material rough(Material m, float roughness) {
+    m.roughness = roughness;
+    return m;
+}
+
+// A ball over a floor under a lamp.
+std::unique_ptr<Scene> ballScene(const Material& material) {
+    SceneBuilder b;
+    b.add(plate({0, 0, 0}, 3), lambert(Rgb(0.7F)), "floor");
+    b.add(sphere({0, 0.8F, 0}, 0.5F, 4), material, "ball");
+    b.add(plate({0.5F, 3, 0}, 0.3F, false), emitter(Rgb(50)), "lamp");
+    b.camera({0, 2.5F, 4}, {0, 0.4F, 0}, 35);
+    return b.build();
+}
+
+// A plate that throws light onto the floor beside it.
+std::unique_ptr<Scene> plateScene(const Material& material) {
+    SceneBuilder b;
+    b.add(plate({0, 0, 0}, 2), lambert(Rgb(0.7F)), "floor");
+    b.add(quad({-0.8F, 0, 1.2F}, {-0.8F, 0, -1}, {-0.8F, 1.6F, -1}, {-0.8F, 1.6F, 1.2F}), material, "plate");
+    b.add(quad({1, 1.15F, -0.15F}, {1, 1.15F, 0.15F}, {1, 0.85F, 0.15F}, {1, 0.85F, -0.15F}), emitter(Rgb(60)), "lamp");
+    b.camera({1.6F, 1.3F, 2.2F}, {-0.4F, 0.45F, 0.2F}, 45);
+    return b.build();
+}
+
+void checkPhotonsAgainstPaths(const Scene& scene) {
+    checkAgreement(estimate(scene, settingsFor("photon", 32, 64), 6, 4),
+                   estimate(scene, settingsFor("path", 32, 1024), 6, 4), 0.02);
+}
+
+}  // namespace
+
+TEST_CASE("a ball of rough glass: photons agree with path tracing on both sides of the split") {
+    for (const float roughness : {0.1F, 0.24F, 0.26F, 0.5F}) {
+        CAPTURE(roughness);
+        checkPhotonsAgainstPaths(*ballScene(rough(glass(1.5F), roughness)));
+    }
+}
+
+TEST_CASE("a rough metal plate: photons agree with path tracing on both sides of the split") {
+    for (const float roughness : {0.1F, 0.24F, 0.26F, 0.5F}) {
+        CAPTURE(roughness);
+        checkPhotonsAgainstPaths(*plateScene(metal(roughness)));
+    }
+}
+
+TEST_CASE("a ball of milky glass, smooth and rough, and one of rough thin walls: photons agree with path tracing") {
+    Material milky = glass(1.5F, {Rgb(0.5F, 0.8F, 0.9F), 0.5F});
+    milky.transmission = 0.6F;
+    milky.baseColor = Rgb(0.9F, 0.7F, 0.5F);
+    for (const Material& m : {milky, rough(milky, 0.2F), rough(milky, 0.4F), rough(thinWall(Rgb(0.9F)), 0.15F),
+                              rough(thinWall(Rgb(0.9F)), 0.4F)}) {
+        CAPTURE(m.roughness);
+        CAPTURE(m.isSolid());
+        checkPhotonsAgainstPaths(*ballScene(m));
+    }
+}
+
+TEST_CASE("light by a mirror that comes through a rough pane to the eye is gathered behind it") {
+    // Wide: photons of the caustic map land on the pane's far side. Narrow: the camera's path goes on to the mirror.
+    for (const float roughness : {0.2F, 0.4F}) {
+        CAPTURE(roughness);
+        SceneBuilder b;
+        b.add(quad({-1, 0, -2}, {1, 0, -2}, {1, 2, -2}, {-1, 2, -2}), metal(0), "mirror");
+        b.add(quad({-1, 0, 0}, {1, 0, 0}, {1, 2, 0}, {-1, 2, 0}), rough(thinWall(Rgb(1)), roughness), "pane");
+        b.add(quad({-0.3F, 2, -0.3F}, {0.3F, 2, -0.3F}, {0.3F, 2.4F, -0.5F}, {-0.3F, 2.4F, -0.5F}),
+              emitter(Rgb(30), true), "lamp");
+        b.camera({0, 1, 3}, {0, 1, 0}, 38);
+        checkPhotonsAgainstPaths(*b.build());
+    }
+}
+
+TEST_CASE("under a point light, photons at rough glass and behind it agree with light tracing") {
+    for (const float roughness : {0.15F, 0.4F}) {
+        CAPTURE(roughness);
+        SceneBuilder b;
+        b.add(plate({0, 0, 0}, 3), lambert(Rgb(0.7F)), "floor");
+        b.add(box({-0.6F, 0.6F, -0.6F}, {0.6F, 1, 0.6F}), rough(glass(1.5F), roughness), "block");
+        b.add(quad({-1.2F, 0, 1}, {-1.2F, 0, -1}, {-1.2F, 2, -1}, {-1.2F, 2, 1}), metal(0), "mirror");
+        b.point({0.6F, 2.2F, 0.2F}, Rgb(20));
+        b.camera({0.8F, 2.5F, 3}, {0, 0.5F, 0}, 40);
+        const auto scene = b.build();
+        // What the camera sees in the mirror is not the light tracer's.
+        PictureSettings photon = settingsFor("photon", 32, 64), light = settingsFor("light", 32, 1024);
+        photon.paths = light.paths = {{"seen", "L.*DE"}};
+        checkAgreement(estimate(*scene, photon, 6, 4, "seen"), estimate(*scene, light, 6, 4, "seen"), 0.02);
+    }
+}
