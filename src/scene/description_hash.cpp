@@ -55,6 +55,7 @@ void add(Hasher& h, const Mesh& m) {
     h.value(m.object);
     h.array(m.positions);
     h.array(m.normals);
+    if (!m.tangents.empty()) h.array(m.tangents);
     for (const auto& uv : m.texCoords) h.array(uv);
     h.array(m.colors);
     h.array(m.triangles);
@@ -82,6 +83,7 @@ void add(Hasher& h, const Material& m) {
         h.value(m.volume->attenuationDistance);
     }
     for (const TextureRef* r : m.textures()) add(h, *r);
+    if (m.normalTexture) h.value(m.normalScale);
     if (m.alphaMode == AlphaMode::Opaque) return;
     h.value(m.alphaMode);
     h.value(m.alpha);

@@ -96,6 +96,7 @@ void GeometryLoader::readVertices(const GltfPrimitive& primitive, const std::vec
         selector_.select(data.triangles, accessor(primitive.attributes.at("POSITION")).count);
     data.positions = readAttribute<Vec3>(model_, primitive.attributes, "POSITION", used);
     data.normals = readAttribute<Vec3>(model_, primitive.attributes, "NORMAL", used);
+    data.tangents = readAttribute<Vec4>(model_, primitive.attributes, "TANGENT", used);
     data.texCoords[0] = readAttribute<Vec2>(model_, primitive.attributes, "TEXCOORD_0", used);
     data.texCoords[1] = readAttribute<Vec2>(model_, primitive.attributes, "TEXCOORD_1", used);
     data.colors = readAttribute<Vec4>(model_, primitive.attributes, "COLOR_0", used);

@@ -105,7 +105,7 @@ void readUnlit(const JsonObject& object, Material& m, Warnings& warnings) {
                  object.where());
     m.metallic = m.specular = m.transmission = 0;
     m.roughness = 1;
-    m.metallicRoughnessTexture = m.specularTexture = m.transmissionTexture = {};
+    m.metallicRoughnessTexture = m.specularTexture = m.transmissionTexture = m.normalTexture = {};
     m.emission = Rgb(0);
     m.volume.reset();
 }
@@ -128,10 +128,6 @@ void readAlpha(const JsonObject& object, Material& m, Warnings& warnings) {
             object.where());
 }
 
-void warnOfIgnored(const JsonObject& object, Warnings& warnings) {
-    if (object.has("normalTexture")) warnings.add("normal textures are not rendered yet", object.where());
-}
-
 GltfMaterial readMaterial(const JsonObject& root, const JsonObject& object, Warnings& warnings) {
     GltfMaterial out;
     Material& m = out.material;
@@ -141,9 +137,10 @@ GltfMaterial readMaterial(const JsonObject& root, const JsonObject& object, Warn
     readSpecular(root, object, m);
     readTransmission(root, object, m, warnings);
     readEmission(root, object, m);
+    m.normalTexture = readTexture(root, object, "normalTexture");
+    if (m.normalTexture) m.normalScale = factor(*object.object("normalTexture"), "scale", 1, kAnyNumber);
     readUnlit(object, m, warnings);
     readAlpha(object, m, warnings);
-    warnOfIgnored(object, warnings);
     out.priority = readPriority(object);
     return out;
 }

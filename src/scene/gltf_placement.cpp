@@ -87,6 +87,7 @@ class MeshPlacer {
             if (!mesh) continue;
             mesh->object = objectName(node, meshName, "node", placed.index);
             mesh->material = material;
+            if (!scene_.materials[material].usesTangents()) mesh->tangents.clear();
             mesh->node = id;
             mesh->switches = switches;
             const std::optional<int> p = priority || primitive.material < 0

@@ -31,10 +31,11 @@ std::string wrongFormat(std::string_view semantic, const AccessorInfo& a, bool q
     const bool isSmall = a.componentType < kUint32;
     if (semantic == "POSITION") {
         if (a.type != "VEC3" || !(a.componentType == kFloat || (quantized && isSmall))) return "VEC3 of float";
-    } else if (semantic == "NORMAL") {
+    } else if (semantic == "NORMAL" || semantic == "TANGENT") {
         const bool isSigned = a.componentType == 5120 || a.componentType == 5122;
-        if (a.type != "VEC3" || !(a.componentType == kFloat || (quantized && a.normalized && isSigned)))
-            return "VEC3 of float";
+        const std::string_view type = semantic == "NORMAL" ? "VEC3" : "VEC4";
+        if (a.type != type || !(a.componentType == kFloat || (quantized && a.normalized && isSigned)))
+            return fmt::format("{} of float", type);
     } else if (semantic == "TEXCOORD") {
         if (a.type != "VEC2" || !(a.componentType == kFloat || isNormalizedUnsigned || (quantized && isSmall)))
             return "VEC2 of float or normalized unsigned";

@@ -1,9 +1,9 @@
 // Materials as glTF states them. Scene turns one into a Bsdf value at each hit.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/math.h"
 #include "scene/texture.h"
@@ -43,14 +43,20 @@ struct Material {
     TextureRef transmissionTexture;  // r
     std::optional<VolumeProperties> volume;
 
+    TextureRef normalTexture;  // x along the tangent, y along the bitangent, z along the normal, from [0,1] to [-1,1]
+    float normalScale = 1;     // of x and y
+
     Rgb emission{0};             // emissiveFactor x emissiveStrength, W/(m2 sr)
     TextureRef emissiveTexture;  // sRGB
 
     // All of its textures, used or not.
-    std::array<const TextureRef*, 6> textures() const {
-        return {&baseColorTexture,     &metallicRoughnessTexture, &specularTexture,
-                &specularColorTexture, &transmissionTexture,      &emissiveTexture};
+    std::vector<const TextureRef*> textures() const {
+        std::vector<const TextureRef*> out = {&baseColorTexture,     &metallicRoughnessTexture, &specularTexture,
+                                              &specularColorTexture, &transmissionTexture,      &emissiveTexture};
+        if (normalTexture) out.push_back(&normalTexture);
+        return out;
     }
+    bool usesTangents() const { return static_cast<bool>(normalTexture); }
     bool emissive() const { return maxComponent(emission) > 0; }
     bool isSolid() const { return transmission > 0 && volume.has_value(); }
     bool isThinWall() const { return transmission > 0 && !volume.has_value(); }

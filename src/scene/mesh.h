@@ -32,6 +32,7 @@ struct Mesh {
     std::string object;           // the node's name, else the mesh's, else "node N"; flux is reported by it
     std::vector<Vec3> positions;  // m, world
     std::vector<Vec3> normals;    // unit, by the inverse transpose; empty: flat
+    std::vector<Vec4> tangents;  // xyz unit, world; w = +-1: the bitangent is w cross(normal, tangent); empty if absent
     std::array<std::vector<Vec2>, 2> texCoords;  // TEXCOORD_0 and _1, empty if absent
     std::vector<Vec4> colors;                    // COLOR_0, linear; empty if absent
     std::vector<Triangle> triangles;             // degenerate ones already left out, with a warning

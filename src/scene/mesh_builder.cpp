@@ -61,6 +61,19 @@ void placeNormals(const PrimitiveData& primitive, const glm::dmat4& world, Mesh&
     if (notUnit > 0) warnings.add("normals are not of unit length: normalised", primitive.where, notUnit);
 }
 
+// Tangents lie in the surface and turn with it; a mirroring node turns the bitangents' side over.
+void placeTangents(const PrimitiveData& primitive, const glm::dmat4& world, Mesh& mesh) {
+    const glm::dmat3 linear(world);
+    const float side = glm::determinant(linear) < 0 ? -1.0F : 1.0F;
+    mesh.tangents.reserve(primitive.tangents.size());
+    for (const Vec4 tangent : primitive.tangents) {
+        const glm::dvec3 placed = linear * glm::dvec3(tangent);
+        const double length = glm::length(placed);
+        // One of no length says nothing: 0 makes the surface's own be found from its texture coordinates.
+        mesh.tangents.emplace_back(length > 0 ? Vec3(placed / length) : Vec3(0), std::copysign(side, side * tangent.w));
+    }
+}
+
 // Triangles with a vertex whose normal is zero get vertices of their own, with the face's normal.
 void flattenWithoutNormal(Mesh& mesh, const std::string& where, Warnings& warnings) {
     uint64_t flattened = 0;
@@ -74,6 +87,7 @@ void flattenWithoutNormal(Mesh& mesh, const std::string& where, Warnings& warnin
             vertex = static_cast<uint32_t>(mesh.positions.size());
             mesh.positions.push_back(Vec3(mesh.positions[from]));
             mesh.normals.push_back(normal);
+            if (!mesh.tangents.empty()) mesh.tangents.push_back(Vec4(mesh.tangents[from]));
             for (auto& uvs : mesh.texCoords)
                 if (!uvs.empty()) uvs.push_back(Vec2(uvs[from]));
             if (!mesh.colors.empty()) mesh.colors.push_back(Vec4(mesh.colors[from]));
@@ -96,6 +110,7 @@ void dropUnusedVertices(Mesh& mesh) {
     const std::vector<uint32_t> used = VertexSelector().select(mesh.triangles, mesh.positions.size());
     mesh.positions = gather(mesh.positions, used);
     mesh.normals = gather(mesh.normals, used);
+    mesh.tangents = gather(mesh.tangents, used);
     for (auto& uvs : mesh.texCoords) uvs = gather(uvs, used);
     mesh.colors = gather(mesh.colors, used);
 }
@@ -174,6 +189,7 @@ std::optional<Mesh> placePrimitive(const PrimitiveData& primitive, const glm::dm
     Mesh mesh;
     placePositions(primitive, world, mesh);
     placeNormals(primitive, world, mesh, warnings);
+    placeTangents(primitive, world, mesh);
     mesh.texCoords = primitive.texCoords;
     mesh.colors = primitive.colors;
     const bool mirrored = glm::determinant(glm::dmat3(world)) < 0;

@@ -38,6 +38,7 @@ struct PrimitiveData {
     std::string file, where;  // "mesh 2 primitive 0", for errors
     std::vector<Vec3> positions;
     std::vector<Vec3> normals;
+    std::vector<Vec4> tangents;
     std::array<std::vector<Vec2>, 2> texCoords;
     std::vector<Vec4> colors;
     std::vector<Triangle> triangles;

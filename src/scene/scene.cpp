@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "path/event.h"
 #include "scene/coverage.h"
+#include "scene/tangent_frame.h"
 
 namespace lsde {
 
@@ -145,7 +146,20 @@ Surface Scene::surface(const Hit& hit) const {
         if (length > 0 && glm::dot(n, s.ng) > 0) s.ns = n / length;
     }
     s.epsilon = surfaceEpsilon(largestCoordinates(a, b, c), hit.t);
+    if (material(s).normalTexture) s.ns = mappedNormal(s);
     return s;
+}
+
+// The shading normal bent by the normal texture.
+Vec3 Scene::mappedNormal(const Surface& s) const {
+    const Material& m = material(s);
+    const Mesh& mesh = description_.meshes[s.mesh];
+    const TangentFrame frame = tangentFrame(mesh, mesh.triangles[s.triangle], s.u, s.v, s.ns, m.normalTexture.texCoord);
+    const Vec3 texel = 2.0F * Vec3(sample(s, m.normalTexture, false)) - Vec3(1);
+    const Vec3 n = m.normalScale * (texel.x * frame.tangent + texel.y * frame.bitangent) + texel.z * s.ns;
+    const float length = glm::length(n);
+    // As for vertex normals: what points behind the face says nothing of this side.
+    return length > 0 && glm::dot(n, s.ng) > 0 ? n / length : s.ns;
 }
 
 Vec2 Scene::texCoord(const Surface& s, int set) const {

@@ -96,6 +96,7 @@ class Scene {
     Vec4 sample(const Surface& s, const TextureRef& ref, bool srgb) const;
     void metallicRoughness(const Surface& s, float& metallic, float& roughness) const;
     Rgb specularColor(const Surface& s) const;
+    Vec3 mappedNormal(const Surface& s) const;
     // eta: refractive index behind the front side over that before it; of no use to thin walls.
     Bsdf transmissiveBsdf(const Surface& s, Rgb baseColor, float eta) const;
 

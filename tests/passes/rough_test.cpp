@@ -36,8 +36,8 @@ std::unique_ptr<Scene> plateScene(const Material& material) {
 }
 
 void checkPhotonsAgainstPaths(const Scene& scene) {
-    checkAgreement(estimate(scene, settingsFor("photon", 32, 64), 6, 4),
-                   estimate(scene, settingsFor("path", 32, 1024), 6, 4), 0.02);
+    checkAgreement(estimate(scene, settingsFor("photon", 32, 32, 100000), 4, 4),
+                   estimate(scene, settingsFor("path", 32, 512), 4, 4), 0.02);
 }
 
 }  // namespace
@@ -93,8 +93,8 @@ TEST_CASE("under a point light, photons at rough glass and behind it agree with 
         b.camera({0.8F, 2.5F, 3}, {0, 0.5F, 0}, 40);
         const auto scene = b.build();
         // What the camera sees in the mirror is not the light tracer's.
-        PictureSettings photon = settingsFor("photon", 32, 64), light = settingsFor("light", 32, 1024);
+        PictureSettings photon = settingsFor("photon", 32, 32, 100000), light = settingsFor("light", 32, 512);
         photon.paths = light.paths = {{"seen", "L.*DE"}};
-        checkAgreement(estimate(*scene, photon, 6, 4, "seen"), estimate(*scene, light, 6, 4, "seen"), 0.02);
+        checkAgreement(estimate(*scene, photon, 4, 4, "seen"), estimate(*scene, light, 4, 4, "seen"), 0.02);
     }
 }
