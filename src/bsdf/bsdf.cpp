@@ -37,7 +37,8 @@ BsdfEval evalBsdf(const Bsdf& bsdf, Vec3 wo, Vec3 wi) {
     return std::visit(
         Overloaded{[&](const DiffuseBsdf& b) { return b.eval(wo, wi); },
                    [&](const MetalRoughBsdf& b) { return b.eval(wo, wi); },
-                   [&](const TransmissiveBsdf& b) { return b.eval(wo, wi); }, [](const auto&) { return BsdfEval{}; }},
+                   [&](const TransmissiveBsdf& b) { return b.eval(wo, wi); },
+                   [&](const LayeredBsdf& b) { return b.eval(wo, wi); }, [](const auto&) { return BsdfEval{}; }},
         bsdf);
 }
 
@@ -46,6 +47,7 @@ bool sampleBsdf(const Bsdf& bsdf, Vec3 wo, float uLobe, Vec2 u, BsdfSample& samp
     return std::visit(Overloaded{[&](const DiffuseBsdf& b) { return b.sample(wo, u, sample); },
                                  [&](const MetalRoughBsdf& b) { return b.sample(wo, uLobe, u, sample); },
                                  [&](const TransmissiveBsdf& b) { return b.sample(wo, uLobe, u, sample); },
+                                 [&](const LayeredBsdf& b) { return b.sample(wo, uLobe, u, sample); },
                                  [&](const auto&) { return sampleDelta(deltaLobes(bsdf, wo), uLobe, sample); }},
                       bsdf);
 }
@@ -60,7 +62,8 @@ DeltaLobes deltaLobes(const Bsdf& bsdf, Vec3 wo) {
     const auto both = [&](const auto& b) { out.count = b.lobes(wo, out.lobe.data()); };
     std::visit(Overloaded{[&](const MirrorBsdf& b) { reflection(b); }, [&](const MetalRoughBsdf& b) { reflection(b); },
                           [&](const DielectricBsdf& b) { both(b); }, [&](const ThinDielectricBsdf& b) { both(b); },
-                          [&](const TransmissiveBsdf& b) { both(b); }, [](const auto&) {}},
+                          [&](const TransmissiveBsdf& b) { both(b); }, [&](const LayeredBsdf& b) { both(b); },
+                          [](const auto&) {}},
                bsdf);
     return out;
 }
@@ -70,30 +73,32 @@ bool sampleNonDelta(const Bsdf& bsdf, Vec3 wo, float uLobe, Vec2 u, BsdfSample& 
     return std::visit(Overloaded{[&](const DiffuseBsdf& b) { return b.sample(wo, u, sample); },
                                  [&](const MetalRoughBsdf& b) { return b.sampleNonDelta(wo, uLobe, u, sample); },
                                  [&](const TransmissiveBsdf& b) { return b.sampleNonDelta(wo, uLobe, u, sample); },
+                                 [&](const LayeredBsdf& b) { return b.sampleNonDelta(wo, uLobe, u, sample); },
                                  [](const auto&) { return false; }},
                       bsdf);
 }
 
 bool hasDelta(const Bsdf& bsdf) {
-    return std::visit(
-        Overloaded{[](const BlackBsdf&) { return false; }, [](const DiffuseBsdf&) { return false; },
-                   [](const MetalRoughBsdf& b) { return b.hasGlossy() && b.glossyIsDelta(); },
-                   [](const TransmissiveBsdf& b) { return b.isDelta(); }, [](const auto&) { return true; }},
-        bsdf);
+    return std::visit(Overloaded{[](const BlackBsdf&) { return false; }, [](const DiffuseBsdf&) { return false; },
+                                 [](const MetalRoughBsdf& b) { return b.hasGlossy() && b.glossyIsDelta(); },
+                                 [](const TransmissiveBsdf& b) { return b.isDelta(); },
+                                 [](const LayeredBsdf& b) { return b.hasDelta(); }, [](const auto&) { return true; }},
+                      bsdf);
 }
 
 bool hasDiffuseLobe(const Bsdf& bsdf) {
     return std::visit(
         Overloaded{[](const DiffuseBsdf&) { return true; }, [](const MetalRoughBsdf& b) { return b.hasDiffuse(); },
-                   [](const TransmissiveBsdf& b) { return b.hasDiffuse(); }, [](const auto&) { return false; }},
+                   [](const TransmissiveBsdf& b) { return b.hasDiffuse(); },
+                   [](const LayeredBsdf& b) { return b.hasDiffuse(); }, [](const auto&) { return false; }},
         bsdf);
 }
 
 bool hasGlossyLobe(const Bsdf& bsdf) {
-    return std::visit(
-        Overloaded{[](const MetalRoughBsdf& b) { return b.hasGlossy() && !b.glossyIsDelta(); },
-                   [](const TransmissiveBsdf& b) { return !b.isDelta(); }, [](const auto&) { return false; }},
-        bsdf);
+    return std::visit(Overloaded{[](const MetalRoughBsdf& b) { return b.hasGlossy() && !b.glossyIsDelta(); },
+                                 [](const TransmissiveBsdf& b) { return !b.isDelta(); },
+                                 [](const LayeredBsdf& b) { return b.hasGlossy(); }, [](const auto&) { return false; }},
+                      bsdf);
 }
 
 bool glossyLobePasses(const Bsdf& bsdf) {
@@ -102,12 +107,13 @@ bool glossyLobePasses(const Bsdf& bsdf) {
 }
 
 VertexClass glossyClass(const Bsdf& bsdf) {
-    const auto classOfRoughness = [](const auto& b) {
-        if (b.roughness >= kGlossyRoughness) return VertexClass::Diffuse;
-        return b.roughness == 0 ? VertexClass::Bend : VertexClass::Glossy;
+    const auto classOfRoughness = [](float roughness) {
+        if (roughness >= kGlossyRoughness) return VertexClass::Diffuse;
+        return roughness == 0 ? VertexClass::Bend : VertexClass::Glossy;
     };
-    return std::visit(Overloaded{[&](const MetalRoughBsdf& b) { return classOfRoughness(b); },
-                                 [&](const TransmissiveBsdf& b) { return classOfRoughness(b); },
+    return std::visit(Overloaded{[&](const MetalRoughBsdf& b) { return classOfRoughness(b.widestRoughness()); },
+                                 [&](const TransmissiveBsdf& b) { return classOfRoughness(b.roughness); },
+                                 [&](const LayeredBsdf& b) { return classOfRoughness(b.glossyRoughness()); },
                                  [](const auto&) { return VertexClass::Diffuse; }},
                       bsdf);
 }
@@ -130,7 +136,8 @@ Rgb albedo(const Bsdf& bsdf) {
                                  [](const DielectricBsdf& b) { return interfaceAlbedo(b.eta, b.tint); },
                                  [](const ThinDielectricBsdf& b) { return interfaceAlbedo(b.ior, b.tint); },
                                  [](const MetalRoughBsdf& b) { return b.albedo(); },
-                                 [](const TransmissiveBsdf& b) { return b.albedo(); }},
+                                 [](const TransmissiveBsdf& b) { return b.albedo(); },
+                                 [](const LayeredBsdf& b) { return b.albedo(); }},
                       bsdf);
 }
 

@@ -14,6 +14,7 @@
 #include "bsdf/conductor.h"
 #include "bsdf/dielectric.h"
 #include "bsdf/diffuse.h"
+#include "bsdf/layered.h"
 #include "bsdf/metal_rough.h"
 #include "bsdf/transmissive.h"
 #include "path/event.h"
@@ -21,7 +22,7 @@
 namespace lsde {
 
 using Bsdf = std::variant<BlackBsdf, DiffuseBsdf, MirrorBsdf, DielectricBsdf, ThinDielectricBsdf, MetalRoughBsdf,
-                          TransmissiveBsdf>;
+                          TransmissiveBsdf, LayeredBsdf>;
 
 // f of each non-delta lobe (1/sr, no cosine; for power from wo to wi, see BsdfEval), with the densities that
 // sampleBsdf() has for wi given wo, and for wo given wi. Densities include the probability of choosing the lobe.

@@ -1,21 +1,23 @@
 #include "bsdf/metal_rough.h"
 
 #include "bsdf/fresnel.h"
-#include "bsdf/microfacet.h"
 #include "sampling/warp.h"
 
 namespace lsde {
 
 namespace {
 
-// The lobes are the same on both sides: they are evaluated and sampled on the upper one.
-Vec3 upper(Vec3 w) { return {w.x, w.y, std::fabs(w.z)}; }
+Rgb fresnel(const MetalRoughBsdf& b, Rgb f0, float cosH) {
+    const Rgb bare = fresnelSchlick(f0, cosH);
+    if (b.film.factor == 0) return bare;
+    return bare + b.film.factor * (thinFilmReflectance(b.film, f0, cosH) - bare);
+}
 
 // Of the coat alone, without the factor `specular`.
-Rgb coatFresnel(const MetalRoughBsdf& b, float cosH) { return fresnelSchlick(b.dielectricF0, cosH); }
+Rgb coatFresnel(const MetalRoughBsdf& b, float cosH) { return fresnel(b, b.dielectricF0, cosH); }
 
 Rgb glossyFresnel(const MetalRoughBsdf& b, float cosH) {
-    return b.metallic * fresnelSchlick(b.baseColor, cosH) + (1 - b.metallic) * b.specular * coatFresnel(b, cosH);
+    return b.metallic * fresnel(b, b.baseColor, cosH) + (1 - b.metallic) * b.specular * coatFresnel(b, cosH);
 }
 
 Rgb diffuseReflectance(const MetalRoughBsdf& b, float cosH) {
@@ -34,8 +36,7 @@ bool sampleDiffuse(const MetalRoughBsdf& b, Vec3 wo, Vec2 u, BsdfSample& sample)
     return true;
 }
 
-bool sampleGlossy(const MetalRoughBsdf& b, Vec3 wo, Vec2 u, BsdfSample& sample) {
-    const Ggx ggx(b.roughness);
+bool sampleGlossy(const MetalRoughBsdf& b, const Ggx& ggx, Vec3 wo, Vec2 u, BsdfSample& sample) {
     const Vec3 h = ggx.sampleHalf(wo, u);
     const float cosH = glm::dot(wo, h);
     const Vec3 wi = 2 * cosH * h - wo;
@@ -50,6 +51,17 @@ bool sampleGlossy(const MetalRoughBsdf& b, Vec3 wo, Vec2 u, BsdfSample& sample) 
 }
 
 }  // namespace
+
+// The lobes are the same on both sides: they are evaluated and sampled on the upper one.
+Vec3 MetalRoughBsdf::toLobe(Vec3 w) const {
+    if (anisotropy == 0) return {w.x, w.y, std::fabs(w.z)};
+    return {direction.x * w.x + direction.y * w.y, direction.x * w.y - direction.y * w.x, std::fabs(w.z)};
+}
+
+Vec3 MetalRoughBsdf::fromLobe(Vec3 w) const {
+    if (anisotropy == 0) return w;
+    return {direction.x * w.x - direction.y * w.y, direction.x * w.y + direction.y * w.x, w.z};
+}
 
 // By the reflectances that a smooth surface would have. Neither lobe is left below a tenth: microfacets seen at a
 // grazing angle reflect more than that, and the weights of their samples must stay bounded.
@@ -66,7 +78,7 @@ float MetalRoughBsdf::glossyProbability(Vec3 wo) const {
 BsdfEval MetalRoughBsdf::eval(Vec3 woSide, Vec3 wiSide) const {
     BsdfEval e;
     if (!(woSide.z * wiSide.z > 0)) return e;
-    const Vec3 wo = upper(woSide), wi = upper(wiSide);
+    const Vec3 wo = toLobe(woSide), wi = toLobe(wiSide);
     const Vec3 h = glm::normalize(wo + wi);
     const float cosH = glm::dot(wo, h);
     const float p = glossyProbability(wo), pReverse = glossyProbability(wi);
@@ -74,9 +86,9 @@ BsdfEval MetalRoughBsdf::eval(Vec3 woSide, Vec3 wiSide) const {
         e.diffuse = {diffuseReflectance(*this, cosH) * kInvPi, (1 - p) * cosineHemispherePdf(wi.z),
                      (1 - pReverse) * cosineHemispherePdf(wo.z)};
     if (hasGlossy() && !glossyIsDelta()) {
-        const Ggx ggx(roughness);
-        e.glossy = {glossyFresnel(*this, cosH) * (ggx.d(h) * ggx.visibility(wo, wi)), p * ggx.reflectionPdf(wo, h),
-                    pReverse * ggx.reflectionPdf(wi, h)};
+        const Ggx lobe = ggx();
+        e.glossy = {glossyFresnel(*this, cosH) * (lobe.d(h) * lobe.visibility(wo, wi)), p * lobe.reflectionPdf(wo, h),
+                    pReverse * lobe.reflectionPdf(wi, h)};
     }
     return e;
 }
@@ -84,6 +96,13 @@ BsdfEval MetalRoughBsdf::eval(Vec3 woSide, Vec3 wiSide) const {
 BsdfSample MetalRoughBsdf::reflect(Vec3 wo) const { return deltaReflection(wo, glossyFresnel(*this, std::fabs(wo.z))); }
 
 Rgb MetalRoughBsdf::albedo() const { return diffuseReflectance(*this, 1) + glossyFresnel(*this, 1); }
+
+bool MetalRoughBsdf::sampleAbove(Vec3 wo, bool glossy, Vec2 u, BsdfSample& sample) const {
+    const Vec3 above = toLobe(wo);
+    if (!(glossy ? sampleGlossy(*this, ggx(), above, u, sample) : sampleDiffuse(*this, above, u, sample))) return false;
+    sample.wi = fromLobe(sample.wi);
+    return true;
+}
 
 bool MetalRoughBsdf::sample(Vec3 wo, float uLobe, Vec2 u, BsdfSample& sample) const {
     const float p = glossyProbability(wo);
@@ -93,8 +112,7 @@ bool MetalRoughBsdf::sample(Vec3 wo, float uLobe, Vec2 u, BsdfSample& sample) co
         return true;
     }
     const bool glossy = uLobe < p;
-    if (!(glossy ? sampleGlossy(*this, upper(wo), u, sample) : sampleDiffuse(*this, upper(wo), u, sample)))
-        return false;
+    if (!sampleAbove(wo, glossy, u, sample)) return false;
     const float pReverse = glossyProbability(sample.wi);
     choose(sample, glossy ? p : 1 - p, glossy ? pReverse : 1 - pReverse);
     sample.wi.z = std::copysign(sample.wi.z, wo.z);
@@ -103,7 +121,7 @@ bool MetalRoughBsdf::sample(Vec3 wo, float uLobe, Vec2 u, BsdfSample& sample) co
 
 bool MetalRoughBsdf::sampleNonDelta(Vec3 wo, float uLobe, Vec2 u, BsdfSample& out) const {
     if (!glossyIsDelta()) return sample(wo, uLobe, u, out);
-    if (!hasDiffuse() || !sampleDiffuse(*this, upper(wo), u, out)) return false;
+    if (!hasDiffuse() || !sampleAbove(wo, false, u, out)) return false;
     out.wi.z = std::copysign(out.wi.z, wo.z);
     return true;
 }

@@ -1,7 +1,10 @@
-// glTF's metallic-roughness material (glTF 2.0 appendix B, with KHR_materials_specular and KHR_materials_ior).
+// glTF's metallic-roughness material (glTF 2.0 appendix B, with KHR_materials_specular, _ior, _anisotropy and
+// _iridescence).
 #pragma once
 
 #include "bsdf/bsdf_types.h"
+#include "bsdf/microfacet.h"
+#include "bsdf/thin_film.h"
 
 namespace lsde {
 
@@ -18,8 +21,15 @@ struct MetalRoughBsdf {
     float specular = 1;       // KHR_materials_specular.specularFactor
     float metallic = 1;
     float roughness = 1;  // glTF's; alpha = roughness^2
+    // KHR_materials_anisotropy: along `direction` (unit, in the plane of the local frame) alpha rises by strength^2 of
+    // what is missing to 1. (Its text has the height-correlated G; here it is separable, as everywhere.)
+    float anisotropy = 0;
+    Vec2 direction{1, 0};
+    ThinFilm film;  // replaces both Schlick terms by those of the surface under a film
 
-    bool glossyIsDelta() const { return roughness == 0; }
+    bool glossyIsDelta() const { return roughness == 0 && anisotropy == 0; }
+    // The larger of the two that an anisotropic lobe has.
+    float widestRoughness() const { return anisotropy > 0 ? std::sqrt(alphaAlong()) : roughness; }
     bool hasDiffuse() const { return metallic < 1 && maxComponent(baseColor) > 0; }
     bool hasGlossy() const { return metallic > 0 || specular > 0; }
 
@@ -31,6 +41,11 @@ struct MetalRoughBsdf {
 
   private:
     float glossyProbability(Vec3 wo) const;  // of choosing the glossy lobe, from either side
+    float alphaAlong() const { return square(roughness) + (1 - square(roughness)) * square(anisotropy); }
+    Ggx ggx() const { return anisotropy > 0 ? Ggx(alphaAlong(), square(roughness)) : Ggx(roughness); }
+    Vec3 toLobe(Vec3 w) const;    // to the upper side, x along the direction
+    Vec3 fromLobe(Vec3 w) const;  // back to the local frame, still above
+    bool sampleAbove(Vec3 wo, bool glossy, Vec2 u, BsdfSample& sample) const;
 };
 
 }  // namespace lsde

@@ -1,4 +1,4 @@
-// Isotropic GGX microfacets with Smith's masking, single scattering (Walter et al. 2007; Heitz 2014).
+// GGX microfacets, isotropic or not, with Smith's masking, single scattering (Walter et al. 2007; Heitz 2014).
 #pragma once
 
 #include "base/math.h"
@@ -10,7 +10,8 @@ namespace lsde {
 class Ggx {
   public:
     // alpha = roughness^2 (glTF). Lobes narrower than what a unit vector of floats resolves are drawn at that width.
-    explicit Ggx(float roughness) : alpha_(std::max(square(roughness), kMinAlpha)) {}
+    explicit Ggx(float roughness) : Ggx(square(roughness), square(roughness)) {}
+    Ggx(float alphaX, float alphaY) : alphaX_(std::max(alphaX, kMinAlpha)), alphaY_(std::max(alphaY, kMinAlpha)) {}
 
     float d(Vec3 h) const;   // per area and 1/sr; integrates to 1 over the projected hemisphere
     float g1(Vec3 w) const;  // share of the microfacets that is seen from w, in [0,1]
@@ -31,7 +32,7 @@ class Ggx {
     // (1 + sqrt(1 + alpha^2 tan^2)) cos: 2 cos / G1, finite at grazing angles.
     float stretch(Vec3 w) const;
 
-    float alpha_;
+    float alphaX_, alphaY_;
 };
 
 }  // namespace lsde

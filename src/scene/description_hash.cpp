@@ -67,6 +67,33 @@ void add(Hasher& h, const Mesh& m) {
     h.value(m.priority);
 }
 
+// What a material does not have leaves the hash as it was before there was such a thing.
+void addLayers(Hasher& h, const Material& m) {
+    if (m.anisotropy) {
+        h.value('a');
+        h.value(m.anisotropy->strength);
+        h.value(m.anisotropy->rotation);
+    }
+    if (m.iridescence) {
+        h.value('i');
+        h.value(m.iridescence->factor);
+        h.value(m.iridescence->ior);
+        h.value(m.iridescence->thicknessMinimum);
+        h.value(m.iridescence->thicknessMaximum);
+    }
+    if (m.sheen) {
+        h.value('s');
+        h.value(m.sheen->color);
+        h.value(m.sheen->roughness);
+    }
+    if (m.clearcoat) {
+        h.value('c');
+        h.value(m.clearcoat->factor);
+        h.value(m.clearcoat->roughness);
+        h.value(m.clearcoat->normalScale);
+    }
+}
+
 void add(Hasher& h, const Material& m) {
     h.value(m.doubleSided);
     h.value(m.baseColor);
@@ -84,6 +111,7 @@ void add(Hasher& h, const Material& m) {
     }
     for (const TextureRef* r : m.textures()) add(h, *r);
     if (m.normalTexture) h.value(m.normalScale);
+    addLayers(h, m);
     if (m.alphaMode == AlphaMode::Opaque) return;
     h.value(m.alphaMode);
     h.value(m.alpha);

@@ -90,6 +90,74 @@ void readTransmission(const JsonObject& root, const JsonObject& object, Material
     }
 }
 
+std::optional<AnisotropyProperties> readAnisotropy(const JsonObject& root, const JsonObject& object) {
+    const auto extension = object.extension("KHR_materials_anisotropy");
+    if (!extension) return {};
+    AnisotropyProperties a;
+    a.strength = factor(*extension, "anisotropyStrength", 0);
+    a.rotation = factor(*extension, "anisotropyRotation", 0, kAnyNumber);
+    a.texture = readTexture(root, *extension, "anisotropyTexture");
+    if (a.strength == 0) return {};
+    return a;
+}
+
+std::optional<IridescenceProperties> readIridescence(const JsonObject& root, const JsonObject& object) {
+    const auto extension = object.extension("KHR_materials_iridescence");
+    if (!extension) return {};
+    constexpr float kNanometre = 1e-9F;
+    IridescenceProperties i;
+    i.factor = factor(*extension, "iridescenceFactor", 0);
+    i.ior = factor(*extension, "iridescenceIor", 1.3, kPositive);
+    i.thicknessMinimum = kNanometre * factor(*extension, "iridescenceThicknessMinimum", 100, kNotNegative);
+    i.thicknessMaximum = kNanometre * factor(*extension, "iridescenceThicknessMaximum", 400, kNotNegative);
+    i.texture = readTexture(root, *extension, "iridescenceTexture");
+    i.thicknessTexture = readTexture(root, *extension, "iridescenceThicknessTexture");
+    if (i.factor == 0) return {};
+    return i;
+}
+
+std::optional<SheenProperties> readSheen(const JsonObject& root, const JsonObject& object) {
+    const auto extension = object.extension("KHR_materials_sheen");
+    if (!extension) return {};
+    SheenProperties s;
+    s.color = colorFactor(*extension, "sheenColorFactor", 0);
+    s.roughness = factor(*extension, "sheenRoughnessFactor", 0);
+    s.colorTexture = readTexture(root, *extension, "sheenColorTexture");
+    s.roughnessTexture = readTexture(root, *extension, "sheenRoughnessTexture");
+    if (isBlack(s.color)) return {};
+    return s;
+}
+
+std::optional<ClearcoatProperties> readClearcoat(const JsonObject& root, const JsonObject& object) {
+    const auto extension = object.extension("KHR_materials_clearcoat");
+    if (!extension) return {};
+    ClearcoatProperties c;
+    c.factor = factor(*extension, "clearcoatFactor", 0);
+    c.roughness = factor(*extension, "clearcoatRoughnessFactor", 0);
+    c.texture = readTexture(root, *extension, "clearcoatTexture");
+    c.roughnessTexture = readTexture(root, *extension, "clearcoatRoughnessTexture");
+    c.normalTexture = readTexture(root, *extension, "clearcoatNormalTexture");
+    if (c.normalTexture) c.normalScale = factor(*extension->object("clearcoatNormalTexture"), "scale", 1, kAnyNumber);
+    if (c.factor == 0) return {};
+    return c;
+}
+
+// Layers of opaque materials. Glass that has them is rendered without, and a coat does not dim what lies under it
+// shines.
+void readLayers(const JsonObject& root, const JsonObject& object, Material& m, Warnings& warnings) {
+    m.anisotropy = readAnisotropy(root, object);
+    m.iridescence = readIridescence(root, object);
+    m.sheen = readSheen(root, object);
+    m.clearcoat = readClearcoat(root, object);
+    if (m.clearcoat && m.emissive()) warnings.add("a clearcoat does not dim the emission below it", object.where());
+    if (!(m.transmission > 0) || !(m.anisotropy || m.iridescence || m.sheen || m.clearcoat)) return;
+    warnings.add("anisotropy, iridescence, sheen and clearcoat are not rendered on glass", object.where());
+    m.anisotropy.reset();
+    m.iridescence.reset();
+    m.sheen.reset();
+    m.clearcoat.reset();
+}
+
 void readEmission(const JsonObject& root, const JsonObject& object, Material& m) {
     const Rgb emissive = colorFactor(object, "emissiveFactor", 0);
     const auto extension = object.extension("KHR_materials_emissive_strength");
@@ -108,6 +176,10 @@ void readUnlit(const JsonObject& object, Material& m, Warnings& warnings) {
     m.metallicRoughnessTexture = m.specularTexture = m.transmissionTexture = m.normalTexture = {};
     m.emission = Rgb(0);
     m.volume.reset();
+    m.anisotropy.reset();
+    m.iridescence.reset();
+    m.sheen.reset();
+    m.clearcoat.reset();
 }
 
 void readAlpha(const JsonObject& object, Material& m, Warnings& warnings) {
@@ -139,6 +211,7 @@ GltfMaterial readMaterial(const JsonObject& root, const JsonObject& object, Warn
     readEmission(root, object, m);
     m.normalTexture = readTexture(root, object, "normalTexture");
     if (m.normalTexture) m.normalScale = factor(*object.object("normalTexture"), "scale", 1, kAnyNumber);
+    readLayers(root, object, m, warnings);
     readUnlit(object, m, warnings);
     readAlpha(object, m, warnings);
     out.priority = readPriority(object);

@@ -16,6 +16,36 @@ struct VolumeProperties {
     float attenuationDistance = kInfinity;  // m
 };
 
+struct AnisotropyProperties {  // KHR_materials_anisotropy
+    float strength = 0;
+    float rotation = 0;  // rad, from the tangent towards the bitangent
+    TextureRef texture;  // rg: direction, b: strength
+};
+
+struct IridescenceProperties {  // KHR_materials_iridescence
+    float factor = 0;
+    float ior = 1.3F;
+    float thicknessMinimum = 1e-7F, thicknessMaximum = 4e-7F;  // m
+    TextureRef texture;                                        // r: factor
+    TextureRef thicknessTexture;                               // g: from minimum to maximum; without it the maximum
+};
+
+struct SheenProperties {  // KHR_materials_sheen
+    Rgb color{0};
+    float roughness = 0;
+    TextureRef colorTexture;      // sRGB
+    TextureRef roughnessTexture;  // alpha
+};
+
+struct ClearcoatProperties {  // KHR_materials_clearcoat
+    float factor = 0;
+    float roughness = 0;
+    TextureRef texture;           // r: factor
+    TextureRef roughnessTexture;  // g
+    TextureRef normalTexture;     // its own; without it the normals of the mesh
+    float normalScale = 1;
+};
+
 // Whether alpha counts (glTF 2.0, section 3.9.4), by coverage.h.
 enum class AlphaMode : uint8_t { Opaque, Mask, Blend };
 
@@ -46,6 +76,11 @@ struct Material {
     TextureRef normalTexture;  // x along the tangent, y along the bitangent, z along the normal, from [0,1] to [-1,1]
     float normalScale = 1;     // of x and y
 
+    std::optional<AnisotropyProperties> anisotropy;
+    std::optional<IridescenceProperties> iridescence;
+    std::optional<SheenProperties> sheen;
+    std::optional<ClearcoatProperties> clearcoat;
+
     Rgb emission{0};             // emissiveFactor x emissiveStrength, W/(m2 sr)
     TextureRef emissiveTexture;  // sRGB
 
@@ -54,9 +89,14 @@ struct Material {
         std::vector<const TextureRef*> out = {&baseColorTexture,     &metallicRoughnessTexture, &specularTexture,
                                               &specularColorTexture, &transmissionTexture,      &emissiveTexture};
         if (normalTexture) out.push_back(&normalTexture);
+        if (anisotropy) out.push_back(&anisotropy->texture);
+        if (iridescence) out.insert(out.end(), {&iridescence->texture, &iridescence->thicknessTexture});
+        if (sheen) out.insert(out.end(), {&sheen->colorTexture, &sheen->roughnessTexture});
+        if (clearcoat)
+            out.insert(out.end(), {&clearcoat->texture, &clearcoat->roughnessTexture, &clearcoat->normalTexture});
         return out;
     }
-    bool usesTangents() const { return static_cast<bool>(normalTexture); }
+    bool usesTangents() const { return normalTexture || anisotropy || (clearcoat && clearcoat->normalTexture); }
     bool emissive() const { return maxComponent(emission) > 0; }
     bool isSolid() const { return transmission > 0 && volume.has_value(); }
     bool isThinWall() const { return transmission > 0 && !volume.has_value(); }

@@ -25,6 +25,7 @@ float meshArea(const Mesh& mesh) {
 }  // namespace
 
 bool hasNarrowLobe(const Material& m) {
+    if (m.clearcoat && (m.clearcoat->roughness < kGlossyRoughness || m.clearcoat->roughnessTexture)) return true;
     const bool glossy = m.metallic > 0 || m.metallicRoughnessTexture || m.specular > 0 || m.transmission > 0;
     const bool narrow = m.roughness < kGlossyRoughness || m.metallicRoughnessTexture;
     return glossy && narrow;
@@ -137,29 +138,32 @@ Surface Scene::surface(const Hit& hit) const {
     // By barycentric weights: closer to the triangle than the point at distance t along the ray.
     s.position = (1 - hit.u - hit.v) * a + hit.u * b + hit.v * c;
     s.ng = glm::normalize(glm::cross(b - a, c - a));
-    s.ns = s.ng;
-    if (!mesh.normals.empty()) {
-        const Vec3 n =
-            (1 - hit.u - hit.v) * mesh.normals[t[0]] + hit.u * mesh.normals[t[1]] + hit.v * mesh.normals[t[2]];
-        const float length = glm::length(n);
-        // Normals that cancel out, or that point behind the face, say nothing of this side: the face's own holds.
-        if (length > 0 && glm::dot(n, s.ng) > 0) s.ns = n / length;
-    }
+    s.ns = vertexNormal(s);
     s.epsilon = surfaceEpsilon(largestCoordinates(a, b, c), hit.t);
-    if (material(s).normalTexture) s.ns = mappedNormal(s);
+    const Material& m = material(s);
+    if (m.normalTexture) s.ns = mappedNormal(s, s.ns, m.normalTexture, m.normalScale);
     return s;
 }
 
-// The shading normal bent by the normal texture.
-Vec3 Scene::mappedNormal(const Surface& s) const {
-    const Material& m = material(s);
+Vec3 Scene::vertexNormal(const Surface& s) const {
     const Mesh& mesh = description_.meshes[s.mesh];
-    const TangentFrame frame = tangentFrame(mesh, mesh.triangles[s.triangle], s.u, s.v, s.ns, m.normalTexture.texCoord);
-    const Vec3 texel = 2.0F * Vec3(sample(s, m.normalTexture, false)) - Vec3(1);
-    const Vec3 n = m.normalScale * (texel.x * frame.tangent + texel.y * frame.bitangent) + texel.z * s.ns;
+    if (mesh.normals.empty()) return s.ng;
+    const Triangle& t = mesh.triangles[s.triangle];
+    const Vec3 n = (1 - s.u - s.v) * mesh.normals[t[0]] + s.u * mesh.normals[t[1]] + s.v * mesh.normals[t[2]];
+    const float length = glm::length(n);
+    // Normals that cancel out, or that point behind the face, say nothing of this side: the face's own holds.
+    return length > 0 && glm::dot(n, s.ng) > 0 ? n / length : s.ng;
+}
+
+// A normal bent by a normal texture.
+Vec3 Scene::mappedNormal(const Surface& s, Vec3 normal, const TextureRef& ref, float scale) const {
+    const Mesh& mesh = description_.meshes[s.mesh];
+    const TangentFrame frame = tangentFrame(mesh, mesh.triangles[s.triangle], s.u, s.v, normal, ref.texCoord);
+    const Vec3 texel = 2.0F * Vec3(sample(s, ref, false)) - Vec3(1);
+    const Vec3 n = scale * (texel.x * frame.tangent + texel.y * frame.bitangent) + texel.z * normal;
     const float length = glm::length(n);
     // As for vertex normals: what points behind the face says nothing of this side.
-    return length > 0 && glm::dot(n, s.ng) > 0 ? n / length : s.ns;
+    return length > 0 && glm::dot(n, s.ng) > 0 ? n / length : normal;
 }
 
 Vec2 Scene::texCoord(const Surface& s, int set) const {
@@ -191,15 +195,17 @@ Bsdf Scene::bsdf(const Surface& s, float iorFront, float iorBack) const {
     metallicRoughness(s, b.metallic, b.roughness);
     b.specular = m.specular;
     if (m.specularTexture) b.specular *= sample(s, m.specularTexture, false).w;
-    if (b.metallic == 0 && b.specular == 0) {
+    const bool bare = !m.anisotropy && !m.iridescence && !m.sheen && !m.clearcoat;
+    if (bare && b.metallic == 0 && b.specular == 0) {
         if (isBlack(baseColor)) return BlackBsdf{};
         return DiffuseBsdf{baseColor};
     }
-    if (b.metallic == 1 && b.roughness == 0) return MirrorBsdf{baseColor};
+    if (bare && b.metallic == 1 && b.roughness == 0) return MirrorBsdf{baseColor};
     // ior 0 stands for an infinite one (KHR_materials_ior): F0 = 1.
     const float f0 = m.ior == 0 ? 1 : square((m.ior - 1) / (m.ior + 1));
     b.dielectricF0 = glm::min(f0 * specularColor(s), Rgb(1));
-    return b;
+    if (bare) return b;
+    return layeredBsdf(s, b);
 }
 
 Bsdf Scene::transmissiveBsdf(const Surface& s, Rgb baseColor, float eta) const {

@@ -96,7 +96,13 @@ class Scene {
     Vec4 sample(const Surface& s, const TextureRef& ref, bool srgb) const;
     void metallicRoughness(const Surface& s, float& metallic, float& roughness) const;
     Rgb specularColor(const Surface& s) const;
-    Vec3 mappedNormal(const Surface& s) const;
+    Vec3 vertexNormal(const Surface& s) const;  // the shading normal before any texture bends it
+    Vec3 mappedNormal(const Surface& s, Vec3 normal, const TextureRef& ref, float scale) const;
+    Vec2 anisotropyDirection(const Surface& s, float& strength) const;
+    ThinFilm film(const Surface& s) const;
+    Sheen sheen(const Surface& s) const;
+    Clearcoat clearcoat(const Surface& s) const;
+    Bsdf layeredBsdf(const Surface& s, MetalRoughBsdf base) const;
     // eta: refractive index behind the front side over that before it; of no use to thin walls.
     Bsdf transmissiveBsdf(const Surface& s, Rgb baseColor, float eta) const;
 

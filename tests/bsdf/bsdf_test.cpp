@@ -5,6 +5,7 @@
 
 #include <array>
 #include <functional>
+#include <map>
 #include <numbers>
 #include <optional>
 
@@ -42,6 +43,14 @@ Rgb64 reflectanceByQuadrature(const Bsdf& bsdf, Vec3 wo) {
     return sum;
 }
 
+// Of a row of the table, found once: it takes a million evaluations.
+const Rgb64& rowReflectance(const Bsdf& bsdf, Vec3 wo) {
+    static std::map<std::pair<const Bsdf*, float>, Rgb64> known;
+    const auto [at, added] = known.try_emplace({&bsdf, wo.z});
+    if (added) at->second = reflectanceByQuadrature(bsdf, wo);
+    return at->second;
+}
+
 // Mean and standard error of the samples' weights.
 struct MeanWeight {
     Rgb64 sum{0}, squares{0};
@@ -63,7 +72,7 @@ struct SampledReflectance {
 using SampleFunction = bool (*)(const Bsdf&, Vec3, float, Vec2, BsdfSample&);
 
 SampledReflectance sampledReflectance(const Bsdf& bsdf, Vec3 wo, SampleFunction draw, uint32_t seed) {
-    constexpr int kSamples = 100'000;
+    constexpr int kSamples = 40'000;
     test::Random random(seed);
     SampledReflectance out;
     for (MeanWeight& event : out.byEvent) event.samples = kSamples;
@@ -165,7 +174,7 @@ TEST_CASE("sampling and quadrature find the same reflectance") {
     uint32_t seed = 4;
     forEachRow([&](const Bsdf& bsdf, Vec3 wo) {
         const MeanWeight sampled = sampledReflectance(bsdf, wo, sampleBsdf, seed++).total;
-        const Rgb64 exact = reflectanceByQuadrature(bsdf, wo) + deltaReflectance(bsdf, wo);
+        const Rgb64 exact = rowReflectance(bsdf, wo) + deltaReflectance(bsdf, wo);
         for (int c = 0; c < 3; ++c)
             CHECK(std::fabs(sampled.mean()[c] - exact[c]) <= tolerance(sampled.standardError()[c]));
     });
@@ -173,8 +182,8 @@ TEST_CASE("sampling and quadrature find the same reflectance") {
 
 TEST_CASE("no surface gives back more light than it gets, but for the glTF mix at a slant") {
     forEachRow([](const Bsdf& bsdf, Vec3 wo) {
-        const float reflectance = maxComponent(Rgb(reflectanceByQuadrature(bsdf, wo) + deltaReflectance(bsdf, wo)));
-        // Where both lobes are there: see metal_rough.h.
+        const float reflectance = maxComponent(Rgb(rowReflectance(bsdf, wo) + deltaReflectance(bsdf, wo)));
+        // Where both lobes are there: see metal_rough.h; of sheen at a slant: see sheen.h.
         const bool mix = hasDiffuseLobe(bsdf) && (hasGlossyLobe(bsdf) || hasDelta(bsdf));
         CHECK(reflectance <= (mix && std::fabs(wo.z) < 0.3F ? 1.2F : 1.0005F));
     });
@@ -298,7 +307,8 @@ TEST_CASE("albedo is what comes back from above, and never above 1") {
         const Rgb a = albedo(row.bsdf);
         CHECK(std::min({a.x, a.y, a.z}) >= 0);
         CHECK(maxComponent(a) <= 1);
-        if (!hasGlossyLobe(row.bsdf)) {
+        // Layers take more of the light that comes at a slant.
+        if (!hasGlossyLobe(row.bsdf) && !std::holds_alternative<LayeredBsdf>(row.bsdf)) {
             const Rgb exact(reflectanceByQuadrature(row.bsdf, {0, 0, 1}) + deltaReflectance(row.bsdf, {0, 0, 1}));
             // The diffuse lobe's 1 - F(h) falls away from the normal.
             const bool mix = hasDiffuseLobe(row.bsdf) && hasDelta(row.bsdf);

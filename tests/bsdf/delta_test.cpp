@@ -1,6 +1,8 @@
 // Mirrors, interfaces and panes: where light goes, and how much of it.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+
 #include "bsdf/bsdf.h"
 #include "bsdf/fresnel.h"
 #include "bsdf/rows.h"
@@ -110,11 +112,12 @@ TEST_CASE("delta lobes offered for splitting are unweighted by any choice, sampl
                 BsdfSample s;
                 if (!sampleBsdf(row.bsdf, wo, (static_cast<float>(i) + 0.5F) / 64, {0.3F, 0.7F}, s) || !s.delta)
                     continue;
-                const BsdfSample& lobe = lobes.lobe[s.transmitted ? 1 : 0];
-                CHECK(s.wi == lobe.wi);
-                CHECK(s.eta == lobe.eta);
-                CHECK(s.straight == lobe.straight);
-                for (int c = 0; c < 3; ++c) CHECK(s.weight[c] * s.pdfW == Approx(lobe.weight[c]));
+                // One of them: two may go the same way.
+                const auto isSampled = [&](const BsdfSample& lobe) {
+                    return s.wi == lobe.wi && s.eta == lobe.eta && s.straight == lobe.straight &&
+                           glm::length(s.weight * s.pdfW - lobe.weight) < 1e-5F;
+                };
+                CHECK(std::any_of(lobes.lobe.begin(), lobes.lobe.begin() + lobes.count, isSampled));
             }
         }
 }
@@ -127,7 +130,7 @@ TEST_CASE("a delta choice is as probable on the way back") {
                 const float uLobe = (static_cast<float>(i) + 0.5F) / 64;
                 if (!sampleBsdf(row.bsdf, wo, uLobe, {0.3F, 0.7F}, s) || !s.delta) continue;
                 if (!sampleBsdf(row.bsdf, s.wi, uLobe, {0.3F, 0.7F}, back) || !back.delta) continue;
-                if (back.transmitted != s.transmitted) continue;
+                if (back.transmitted != s.transmitted || glm::length(back.wi - wo) > 1e-4F) continue;
                 CAPTURE(row.name);
                 CHECK(s.reversePdfW == Approx(back.pdfW).epsilon(1e-3));
             }

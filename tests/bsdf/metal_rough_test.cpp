@@ -162,3 +162,23 @@ TEST_CASE("lobes are chosen such that weights stay bounded") {
             if (plastic.sample(directionAt(angle, 0), uLobe, random.uniform2D(), s)) CHECK(s.weight.x < 10);
         }
 }
+
+TEST_CASE("an anisotropic lobe is wide along its direction and as rough as without across it") {
+    const MetalRoughBsdf brushed{.roughness = 0.3F, .anisotropy = 0.8F, .direction = {0.6F, 0.8F}};
+    const MetalRoughBsdf plain{.roughness = 0.3F};
+    const Vec3 along(0.6F, 0.8F, 0), across(-0.8F, 0.6F, 0);
+    const auto at = [](Vec3 axis, float tilt) { return glm::normalize(Vec3(0, 0, 1) + tilt * axis); };
+    // D of Burley 2012, eq. 12, by hand: alpha across is roughness^2, along it mix(roughness^2, 1, strength^2).
+    const double b = 0.09, a = 0.09 + 0.91 * 0.64;
+    CHECK(brushed.widestRoughness() == Approx(std::sqrt(a)));
+    for (const float tilt : {0.0F, 0.1F, 0.5F})
+        for (const bool isAlong : {false, true}) {
+            const Vec3 wi = at(isAlong ? along : across, tilt), wo(0, 0, 1);
+            const Vec3 h = glm::normalize(wo + wi);
+            const double sine2 = 1 - square(double{h.z}), width = isAlong ? a : b;
+            const double d = 1 / (kPiDouble * a * b * square(sine2 / square(width) + square(double{h.z})));
+            const double tan2 = square(double{tilt}), g = 2 / (1 + std::sqrt(1 + square(width) * tan2));
+            CHECK(brushed.eval(wo, wi).glossy.f.x == Approx(d * g / (4.0 * wi.z)).epsilon(1e-3));
+        }
+    CHECK(brushed.eval({0, 0, 1}, at(along, 0.5F)).glossy.f.x > 5 * plain.eval({0, 0, 1}, at(along, 0.5F)).glossy.f.x);
+}

@@ -2,6 +2,8 @@
 // share none of their estimates.
 #include <doctest/doctest.h>
 
+#include <vector>
+
 #include "passes/pictures.h"
 #include "support/scenes.h"
 
@@ -65,6 +67,53 @@ TEST_CASE("a ball of milky glass, smooth and rough, and one of rough thin walls:
         CAPTURE(m.roughness);
         CAPTURE(m.isSolid());
         checkPhotonsAgainstPaths(*ballScene(m));
+    }
+}
+
+TEST_CASE("varnish, cloth, brushed metal and films: photons agree with path tracing") {
+    Material paint = metal(0.4F, Rgb(0.8F, 0.3F, 0.2F));
+    paint.metallic = 0.5F;
+    Material cloth = lambert(Rgb(0.4F));
+    cloth.sheen = SheenProperties{Rgb(0.8F), 0.4F};
+    Material brushed = metal(0.15F);
+    brushed.anisotropy = AnisotropyProperties{0.6F, 0.4F};
+    Material film = metal(0.1F, Rgb(0.7F));
+    film.iridescence = IridescenceProperties{1};
+    std::vector<Material> all = {cloth, brushed, film};
+    for (const float roughness : {0.0F, 0.15F, 0.4F}) {
+        paint.clearcoat = ClearcoatProperties{1, roughness};
+        all.push_back(paint);
+    }
+    for (const Material& m : all) {
+        CAPTURE(m.roughness);
+        CAPTURE(m.clearcoat.has_value());
+        checkPhotonsAgainstPaths(*plateScene(m));
+    }
+}
+
+TEST_CASE("a caustic on a floor with a normal texture, and a furnace of such walls: photons agree with path tracing") {
+    Texture bumps;
+    bumps.width = bumps.height = 16;
+    for (int y = 0; y < 16; ++y)
+        for (int x = 0; x < 16; ++x) {
+            const Vec3 n = glm::normalize(Vec3(0.5F * std::sin(0.785F * static_cast<float>(x)),
+                                               0.5F * std::sin(0.393F * static_cast<float>(y)), 1));
+            for (const float c : {n.x, n.y, n.z}) bumps.rgba.push_back(static_cast<uint8_t>(127.5F * c + 128));
+            bumps.rgba.push_back(255);
+        }
+    for (const bool furnace : {false, true}) {
+        CAPTURE(furnace);
+        SceneBuilder b;
+        Material wall = lambert(Rgb(0.7F));
+        wall.normalTexture = b.texture(bumps);
+        if (furnace) wall.emission = Rgb(0.3F);
+        const std::vector<Vec2> corners = {{0, 3}, {3, 3}, {3, 0}, {0, 0}};
+        b.add(plate({0, 0, 0}, 2), wall, "floor").texCoords[0] = corners;
+        if (furnace) b.add(plate({0, 2, 0}, 2, false), wall, "ceiling").texCoords[0] = corners;
+        b.add(sphere({0, 0.8F, 0}, 0.5F, 4), glass(1.5F), "ball");
+        b.add(plate({0.3F, 1.95F, 0}, 0.2F, false), emitter(Rgb(60)), "lamp");
+        b.camera({0, 1.7F, 3}, {0, 0.3F, 0}, 40);
+        checkPhotonsAgainstPaths(*b.build());
     }
 }
 

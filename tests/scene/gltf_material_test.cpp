@@ -85,6 +85,33 @@ TEST_CASE("every property of a material is read") {
     CHECK(m.isSolid());
 }
 
+TEST_CASE("anisotropy, iridescence, sheen and clearcoat are read, lengths in metres; factors of 0 are as none") {
+    Json json = {{"extensions",
+                  {{"KHR_materials_anisotropy", {{"anisotropyStrength", 0.6}, {"anisotropyRotation", 1.5}}},
+                   {"KHR_materials_iridescence",
+                    {{"iridescenceFactor", 0.5}, {"iridescenceIor", 1.4}, {"iridescenceThicknessMaximum", 800}}},
+                   {"KHR_materials_sheen", {{"sheenColorFactor", {0.1, 0.2, 0.3}}, {"sheenRoughnessFactor", 0.7}}},
+                   {"KHR_materials_clearcoat", {{"clearcoatFactor", 0.9}, {"clearcoatRoughnessFactor", 0.1}}}}}};
+    const Material m = materialOf(json);
+    REQUIRE(m.anisotropy);
+    CHECK(m.anisotropy->strength == 0.6F);
+    CHECK(m.anisotropy->rotation == 1.5F);
+    REQUIRE(m.iridescence);
+    CHECK(m.iridescence->factor == 0.5F);
+    CHECK(m.iridescence->ior == 1.4F);
+    CHECK(m.iridescence->thicknessMinimum == doctest::Approx(1e-7));
+    CHECK(m.iridescence->thicknessMaximum == doctest::Approx(8e-7));
+    REQUIRE(m.sheen);
+    CHECK(m.sheen->color == Rgb(0.1F, 0.2F, 0.3F));
+    CHECK(m.sheen->roughness == 0.7F);
+    REQUIRE(m.clearcoat);
+    CHECK(m.clearcoat->factor == 0.9F);
+    CHECK(m.clearcoat->roughness == 0.1F);
+    for (auto& [name, extension] : json["extensions"].items()) extension = Json::object();
+    const Material none = materialOf(json);
+    CHECK_FALSE((none.anisotropy || none.iridescence || none.sheen || none.clearcoat));
+}
+
 TEST_CASE("thickness tells a solid from a thin wall, and transmission either from an opaque body") {
     const auto with = [](double transmission, double thickness, double metallic) {
         Json json = withExtension("volume", {{"thicknessFactor", thickness}});
@@ -137,17 +164,26 @@ TEST_CASE("what is rendered otherwise than the file says gets one warning, with 
         return warnsOnce(load(triangleFileWith(material)), text);
     };
     CHECK(warned(withExtension("transmission", {{"transmissionFactor", 1}}), "transmission has no effect on a metal"));
+    Json glass = withExtension("transmission", {{"transmissionFactor", 1}});
+    glass["pbrMetallicRoughness"] = {{"metallicFactor", 0}};
+    glass["extensions"]["KHR_materials_clearcoat"] = {{"clearcoatFactor", 1}};
+    CHECK(warned(glass, "anisotropy, iridescence, sheen and clearcoat are not rendered on glass"));
+    CHECK_FALSE(materialOf(glass).clearcoat);
+    Json lamp = withExtension("clearcoat", {{"clearcoatFactor", 1}});
+    lamp["emissiveFactor"] = {1, 1, 1};
+    CHECK(warned(lamp, "a clearcoat does not dim the emission below it"));
     const Json gauze = {{"alphaMode", "BLEND"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 0.1}}}}};
     CHECK(warned(gauze, "material 0: alphaMode BLEND with little alpha is not glass"));
     CHECK(load(triangleFileWith({{"alphaMode", "BLEND"}})).warnings.empty());
     GltfFile file = triangleFile();
-    file.json["extensionsUsed"] = {"KHR_materials_made_up", "KHR_materials_sheen", "KHR_materials_volume"};
+    file.json["extensionsUsed"] = {"KHR_materials_made_up", "KHR_materials_pbrSpecularGlossiness",
+                                   "KHR_materials_volume"};
     file.json["materials"] = {gauze, gauze, gauze};
     file.json["animations"] = {Json::object()};
     const SceneDescription scene = load(file);
     CHECK(scene.warnings.size() == 4);
     CHECK(warnsOnce(scene, "scene.gltf: extension \"KHR_materials_made_up\" is ignored"));
-    CHECK(warnsOnce(scene, "extension \"KHR_materials_sheen\" is ignored"));
+    CHECK(warnsOnce(scene, "extension \"KHR_materials_pbrSpecularGlossiness\" is ignored"));
     CHECK(warnsOnce(scene,
                     "material 0: alphaMode BLEND with little alpha is not glass: light passes it unbent (glass "
                     "has KHR_materials_transmission) (3 in all)"));

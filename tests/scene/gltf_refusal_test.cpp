@@ -323,15 +323,15 @@ TEST_CASE("a line that refuses stays one short line, whatever the names in the f
 
 TEST_CASE("warnings that came before a refusal are not lost") {
     GltfFile file = triangleFile();
-    file.json["extensionsUsed"] = {"KHR_materials_sheen"};
+    file.json["extensionsUsed"] = {"KHR_materials_pbrSpecularGlossiness"};
     file["/nodes/0/mesh"] = 3;
     std::vector<std::string> warnings;
     GltfOptions options;
     options.onWarning = [&](const std::string& line) { warnings.push_back(line); };
     CHECK_THROWS_AS(load(file, options), Error);
     REQUIRE(warnings.size() == 1);
-    CHECK(contains(warnings[0], "scene.gltf: extension \"KHR_materials_sheen\" is ignored"));
+    CHECK(contains(warnings[0], "scene.gltf: extension \"KHR_materials_pbrSpecularGlossiness\" is ignored"));
     file["/nodes/0/mesh"] = 0;
-    CHECK(warnsOnce(load(file, options), "extension \"KHR_materials_sheen\" is ignored"));
+    CHECK(warnsOnce(load(file, options), "extension \"KHR_materials_pbrSpecularGlossiness\" is ignored"));
     CHECK(warnings.size() == 1);
 }

@@ -197,6 +197,58 @@ TEST_CASE("glass that is not clear and smooth keeps its roughness, its diffuse b
     CHECK(std::get<DielectricBsdf>(bsdfAt(none, {}, 0.25F, 1)).eta == 1);
 }
 
+TEST_CASE("layers become what their factors and textures say, and none is made where they are empty") {
+    Material m = metal(0.4F);
+    m.anisotropy = AnisotropyProperties{0.8F, 0.5F};
+    const auto brushed = std::get<MetalRoughBsdf>(bsdfAt(m));
+    CHECK(brushed.anisotropy == 0.8F);
+    // u runs along x, v along y: the bitangent, up in a picture, along -y. The frame about +z has x as its first axis.
+    CHECK(brushed.direction.x == doctest::Approx(std::cos(0.5)));
+    CHECK(brushed.direction.y == doctest::Approx(-std::sin(0.5)));
+    m.anisotropy->texture.texture = 0;
+    // Green alone: along the bitangent, turned on by the rotation; a strength of 0.4.
+    const auto textured = std::get<MetalRoughBsdf>(bsdfAt(m, {twoTexels({128, 255, 102, 0, 0, 0, 0, 0})}));
+    CHECK(textured.anisotropy == doctest::Approx(0.8 * 0.4));
+    CHECK(textured.direction.x == doctest::Approx(-std::sin(0.5)).epsilon(0.02));
+    CHECK(textured.direction.y == doctest::Approx(-std::cos(0.5)).epsilon(0.02));
+
+    Material film = metal(0);
+    film.iridescence = IridescenceProperties{0.5F, 1.4F, 1e-7F, 5e-7F};
+    CHECK(std::get<MetalRoughBsdf>(bsdfAt(film)).film.thickness == 5e-7F);
+    film.iridescence->texture.texture = film.iridescence->thicknessTexture.texture = 0;
+    const auto soap = std::get<MetalRoughBsdf>(bsdfAt(film, {twoTexels({102, 51, 0, 0, 0, 0, 0, 0})})).film;
+    CHECK(soap.factor == doctest::Approx(0.5 * 0.4));
+    CHECK(soap.thickness == doctest::Approx(1e-7 + 0.2 * 4e-7));
+
+    Material cloth = lambert(Rgb(0.5F));
+    cloth.sheen = SheenProperties{Rgb(0.5F), 0.6F};
+    cloth.clearcoat = ClearcoatProperties{0.9F, 0.2F};
+    cloth.sheen->colorTexture.texture = cloth.sheen->roughnessTexture.texture = 0;
+    cloth.clearcoat->texture.texture = cloth.clearcoat->roughnessTexture.texture = 0;
+    const auto layered = std::get<LayeredBsdf>(bsdfAt(cloth, {twoTexels({255, 102, 0, 51, 0, 0, 0, 0})}));
+    CHECK(layered.sheen.color.x == 0.5F);
+    CHECK(layered.sheen.color.z == 0);
+    CHECK(layered.sheen.roughness == doctest::Approx(0.6 * 0.2));
+    CHECK(layered.coat.factor == 0.9F);
+    CHECK(layered.coat.roughness == doctest::Approx(0.2 * 0.4));
+    CHECK(layered.coat.normal == Vec3(0, 0, 1));
+    // Where the textures leave nothing of them.
+    CHECK(std::holds_alternative<MetalRoughBsdf>(bsdfAt(cloth, {twoTexels({255, 102, 0, 51, 0, 0, 0, 0})}, 0.75F)));
+}
+
+TEST_CASE("a coat lies on the mesh's own normals, or on those of its own texture, whatever bends the base's") {
+    Material m = lambert(Rgb(0.5F));
+    m.clearcoat = ClearcoatProperties{1, 0};
+    m.normalTexture.texture = 0;
+    const std::vector<Texture> textures = {twoTexels({204, 128, 230, 0, 204, 128, 230, 0}),
+                                           twoTexels({128, 128, 255, 0, 204, 128, 230, 0})};
+    const Vec3 coat = std::get<LayeredBsdf>(bsdfAt(m, textures)).coat.normal;
+    CHECK(coat.z == doctest::Approx(0.8).epsilon(0.01));  // the face's, in the frame of the bent normal
+    m.clearcoat->normalTexture.texture = 1;
+    const auto same = std::get<LayeredBsdf>(bsdfAt(m, textures, 0.75F)).coat.normal;
+    CHECK(same.z == doctest::Approx(1));
+}
+
 TEST_CASE("textures and vertex colours multiply the factors: colours by their sRGB curve, data as they are") {
     Material m;
     m.baseColor = Rgb(0.5F);
@@ -339,6 +391,26 @@ TEST_CASE("the hash changes with all that light depends on") {
         [](SceneDescription& d) { d.materials[0].specularColorTexture.texture = 0; },
         [](SceneDescription& d) { d.materials[0].transmissionTexture.texture = 0; },
         [](SceneDescription& d) { d.materials[0].emissiveTexture.texture = 0; },
+        [](SceneDescription& d) { d.materials[0].normalTexture.texture = 0; },
+        [](SceneDescription& d) {
+            d.materials[0].normalTexture.texture = 0;
+            d.materials[0].normalScale = 2;
+        },
+        [](SceneDescription& d) { d.meshes[0].tangents.assign(8, Vec4(1)); },
+        [](SceneDescription& d) { d.materials[0].anisotropy = AnisotropyProperties{0.5F}; },
+        [](SceneDescription& d) {
+            d.materials[0].anisotropy = AnisotropyProperties{0.5F, 1};
+        },
+        [](SceneDescription& d) {
+            d.materials[0].iridescence = IridescenceProperties{0.5F, 1.4F, 0.1F, 0.2F};
+        },
+        [](SceneDescription& d) {
+            d.materials[0].sheen = SheenProperties{Rgb(0.5F, 1.4F, 0.1F), 0.2F};
+        },
+        [](SceneDescription& d) { d.materials[0].clearcoat = ClearcoatProperties{0.5F}; },
+        [](SceneDescription& d) {
+            d.materials[0].clearcoat = ClearcoatProperties{0.5F, 1};
+        },
         [](SceneDescription& d) { d.materials[0].alphaMode = AlphaMode::Blend; },
         [](SceneDescription& d) { d.materials[0].alphaMode = AlphaMode::Mask; },
         [](SceneDescription& d) {

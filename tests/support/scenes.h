@@ -148,6 +148,12 @@ class SceneBuilder {
         description_.meshes.push_back(std::move(mesh));
         return description_.meshes.back();
     }
+    TextureRef texture(Texture t) {
+        description_.textures.push_back(std::move(t));
+        TextureRef ref;
+        ref.texture = static_cast<int>(description_.textures.size()) - 1;
+        return ref;
+    }
     void point(Vec3 position, Rgb intensity) {
         PunctualLight l;
         l.name = "point";
