@@ -20,10 +20,11 @@ BELOW = {
     'compare': ['image', 'store'],
     'image': ['store'],
     'bsdf': ['sampling', 'path'],
-    'sampling': ['base'],
+    'sampling': ['base', 'data'],
     'path': ['base'],
     'store': ['base'],
     'base': [],
+    'data': [],  # measured constants
 }
 
 # Third-party headers, and the one file that may include them, so that each library can be replaced in one room.

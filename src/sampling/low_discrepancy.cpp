@@ -16,7 +16,7 @@ struct SobolSeed {
     std::array<uint32_t, 5> m;
 };
 
-// Dimensions 1 to 7 (0 is van der Corput's), from new-joe-kuo-6 (Joe & Kuo 2008, "Constructing Sobol sequences with
+// Dimensions 1 to 8 (0 is van der Corput's), from new-joe-kuo-6 (Joe & Kuo 2008, "Constructing Sobol sequences with
 // better two-dimensional projections").
 constexpr std::array<SobolSeed, kSobolTableDimensions - 1> kSeeds = {{{1, 0, {1}},
                                                                       {2, 1, {1, 3}},
@@ -24,7 +24,8 @@ constexpr std::array<SobolSeed, kSobolTableDimensions - 1> kSeeds = {{{1, 0, {1}
                                                                       {3, 2, {1, 1, 1}},
                                                                       {4, 1, {1, 1, 3, 3}},
                                                                       {4, 4, {1, 3, 5, 13}},
-                                                                      {5, 2, {1, 1, 5, 5, 17}}}};
+                                                                      {5, 2, {1, 1, 5, 5, 17}},
+                                                                      {5, 4, {1, 1, 5, 5, 5}}}};
 
 using Columns = std::array<uint64_t, 64>;  // direction numbers as binary fractions, the first digit in bit 63
 
@@ -61,7 +62,7 @@ constexpr ByteTables byteTables(int dimension) {
 
 constexpr std::array<ByteTables, kSobolTableDimensions> kTables = {byteTables(0), byteTables(1), byteTables(2),
                                                                    byteTables(3), byteTables(4), byteTables(5),
-                                                                   byteTables(6), byteTables(7)};
+                                                                   byteTables(6), byteTables(7), byteTables(8)};
 
 }  // namespace
 

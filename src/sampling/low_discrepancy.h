@@ -8,7 +8,7 @@
 
 namespace lsde {
 
-inline constexpr int kSobolTableDimensions = 8;
+inline constexpr int kSobolTableDimensions = 9;
 
 // Also turns reversed digits into the usual order, the first digit in bit 31, and back.
 constexpr uint32_t reverseBits(uint32_t x) {

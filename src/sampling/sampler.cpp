@@ -7,7 +7,8 @@
 
 namespace lsde {
 
-static_assert(Sampler::kSobolDimensions <= kSobolTableDimensions);
+static_assert(Sampler::kSobolDimensions <= Sampler::kWavelengthDimension);
+static_assert(Sampler::kWavelengthDimension < kSobolTableDimensions);
 static_assert(Sampler::kSobolDimensions % Sampler::kSetDimensions == 0);  // next2D() counts on it
 
 // SplitMix64's stream that starts at the key.
@@ -47,6 +48,12 @@ Vec2 Sampler::next2D() {
     if (dimension_ + 1 >= kSobolDimensions && (dimension_ + 1) % kSetDimensions == 0) ++dimension_;
     const float x = next();
     return {x, next()};
+}
+
+float Sampler::wavelengthNumber() const {
+    // The top bit keeps the seed apart from those of next()'s dimensions, and the lowest ones from those of sets.
+    constexpr uint64_t kSeedOfWavelength = uint64_t{1} << 63;
+    return toUnitFloat(scrambledSobol(index_, kWavelengthDimension, seedOf(kSeedOfWavelength)));
 }
 
 void Sampler::skipTo(int dimension) { dimension_ = std::max(dimension_, static_cast<uint32_t>(dimension)); }

@@ -20,12 +20,16 @@ class Sampler {
   public:
     static constexpr int kSobolDimensions = 8;
     static constexpr int kSetDimensions = 4;
+    static constexpr int kWavelengthDimension = 8;  // of Sobol's; next() does not use it
 
     static Sampler sequence(uint64_t seed, Stage stage, uint64_t index);
     static Sampler pixel(uint64_t seed, Stage stage, uint32_t x, uint32_t y, uint64_t sampleIndex);
 
     float next();   // uniform in [0,1), a multiple of 2^-24
     Vec2 next2D();  // two dimensions of one set
+    // Of the path's wavelength: a dimension of its own, so that it is stratified with the others and changes none of
+    // them. Always the same number; ask before the first fork.
+    float wavelengthNumber() const;
     // Skips to dimension d (never back), so that a fixed purpose keeps its dimension whatever was drawn before.
     void skipTo(int dimension);
     // An independent stream for a branch of a split path; the parent goes on unchanged. The branches of a pixel's

@@ -203,3 +203,23 @@ TEST_CASE("the mean of a smooth function over four dimensions converges faster t
     MESSAGE("error against random points: sequence ", errors[0], ", beyond 2^32 ", errors[1], ", padded set ",
             errors[2], ", branch ", errors[3], ", hashed ", random);
 }
+
+TEST_CASE("the number of a path's wavelength is stratified, independent of the others, and always the same") {
+    for (const bool pixel : {false, true}) {
+        CAPTURE(pixel);
+        const auto sampler = [pixel](uint32_t i) {
+            return pixel ? Sampler::pixel(3, Stage::Test, 5, 7, i) : Sampler::sequence(3, Stage::Test, i);
+        };
+        std::vector<bool> taken(256);
+        for (uint32_t i = 0; i < 256; ++i) taken[static_cast<size_t>(256 * sampler(i).wavelengthNumber())] = true;
+        CHECK(std::count(taken.begin(), taken.end(), true) == 256);
+        for (const int d : {0, 1, 4, 6, 7, 8, 9, 20}) {
+            CAPTURE(d);
+            CHECK(independent(
+                [&](uint32_t i) { return Vec2(sampler(i).wavelengthNumber(), dimensionOf(sampler(i), d)); }, 16));
+        }
+        Sampler drawn = sampler(9);
+        for (int i = 0; i < 11; ++i) drawn.next();
+        CHECK(drawn.wavelengthNumber() == sampler(9).wavelengthNumber());
+    }
+}
