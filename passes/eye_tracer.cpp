@@ -102,6 +102,7 @@ void EyeTracer::samplePixel(int x, int y, uint64_t index, EyeScratch& scratch) c
     const CameraRay ray = camera_.ray(Vec2(x, y) + inPixel, lens ? path.sampler.next2D() : Vec2(0));
     path.state.ray = ray.ray;
     path.state.media = cameraMedia_;
+    path.state.reserved = reserveWavelength(scene_, path.sampler);
     path.mask = layers_.filter().eye();
     path.splits = settings_.splits;
     path.width = ray.width;
@@ -176,7 +177,7 @@ void EyeTracer::addEmitter(Rgb radiance, const PdfW& pdfW, const EyePath& path, 
     if (photons_ == nullptr) hit = path.lastDelta ? EyeWalkClass::EmitterHit::Full : EyeWalkClass::EmitterHit::Mis;
     if (hit == EyeWalkClass::EmitterHit::Dropped) return;
     const float weight = hit == EyeWalkClass::EmitterHit::Mis ? powerHeuristic(path.misPdf, pdfW()) : 1;
-    scratch.sums.contribute(layers_, path.state.throughput * radiance * weight, layers_.filter().light(), path.mask);
+    scratch.sums.contribute(layers_, path.state.rgb() * radiance * weight, layers_.filter().light(), path.mask);
 }
 
 int EyeTracer::lightSamples(const EyePath& path) const {
@@ -200,7 +201,7 @@ void EyeTracer::addDirect(const Vertex& v, EyePath& path, EyeScratch& scratch) c
         query.glossy &= layers_.counts(layers_.filter().accepted(light, glossy));
     }
     if (!query.diffuse && !query.glossy) return;
-    const Rgb throughput = path.state.throughput / static_cast<float>(samples);
+    const Rgb throughput = path.state.rgb() / static_cast<float>(samples);
     const LightChoice choice = lights_.at(litPlace(v));
     for (int i = 0; i < samples; ++i) {
         const Vec2 onLight = samples == 1 ? u : inQuarter(u, i);
@@ -232,6 +233,7 @@ void EyeTracer::addPhotons(const Vertex& v, const EyePath& path, EyeScratch& scr
     query.glossyOnly = !diffuse && !glossyIsWide;
     query.glossyFromAll = glossyIsWide;
     query.glossyFromFlagged = glossyGathers;
+    query.wavelength = path.state.wavelength;
     addGathered(photons_->caustic(), query, v, path, scratch);
     if ((glossyIsWide || glossyGathers) && glossyLobePasses(v.bsdf)) {
         PhotonGatherQuery through = query;
@@ -274,7 +276,7 @@ void EyeTracer::addGathered(const ClassGather& from, const PhotonGatherQuery& qu
     }
     // Of --only's paths as much of it as they have of the light.
     const float of = luminance(path.state.throughput * light.total);
-    const float share = of > 0 ? std::clamp(luminance(scratch.sums.layer[0] - before) / of, 0.0F, 1.0F) : 0;
+    const float share = of != 0 ? std::clamp(luminance(scratch.sums.layer[0] - before) / of, 0.0F, 1.0F) : 0;
     scratch.sums.photonVariance += share * mean(square(path.state.throughput) * light.variance);
 }
 

@@ -82,8 +82,8 @@ bool sidesAgree(const Receiver& at, Vec3 direction, Vec3 wi) {
     return glm::dot(direction, ng) * wi.z > 0 && glm::dot(at.frame.toWorld(at.wo), ng) * at.wo.z > 0;
 }
 
-// Adds one photon's light by lobe; that of a Lambertian surface without its albedo / pi.
-void scatterPhoton(const PhotonPayload& p, float kernel, const Receiver& at, GatheredPaths& out,
+// Adds one photon's light, of the arriving irradiance, by lobe; that of a Lambertian surface without its albedo / pi.
+void scatterPhoton(const PhotonPayload& p, Rgb arriving, const Receiver& at, GatheredPaths& out,
                    GatherScratch& scratch) {
     const Vec3 direction = unpackDirection(p.direction);
     const Vec3 wi = at.frame.toLocal(direction);
@@ -92,7 +92,7 @@ void scatterPhoton(const PhotonPayload& p, float kernel, const Receiver& at, Gat
         shading = kMaxShadingWeight;
         ++scratch.clamped;
     }
-    const Rgb power = unpackPower(p.power) * (kernel * shading);
+    const Rgb power = arriving * shading;
     if (std::holds_alternative<DiffuseBsdf>(at.bsdf)) {
         if (wi.z * at.wo.z > 0) out.diffuse += power;
         return;
@@ -102,6 +102,21 @@ void scatterPhoton(const PhotonPayload& p, float kernel, const Receiver& at, Gat
     if (!at.query.glossyOnly) out.diffuse += power * f.diffuse.f;
     if (at.query.glossyFromAll || (at.query.glossyFromFlagged && (p.flags & kGlossyGather) != 0))
         out.glossy += power * f.glossy.f / square(f.eta);
+}
+
+// A photon as a path from the eye sees it.
+struct Match {
+    Rgb power{0};      // W of one path, in the picture's channels
+    float kernel = 1;  // over wavelengths, where both have one; in `power`
+};
+
+// The weight is the photon's where both have a wavelength: where light of one arrives, its colour is kept, and what the
+// eye's path carries is smeared over wavelengths.
+Match matchOf(const PhotonPayload& p, WavelengthId eye, float share) {
+    if (p.wavelength == kAllWavelengths) return {weighed(unpackPower(p.power), eye)};
+    if (eye == kAllWavelengths) return {rgbPower(p)};
+    const float kernel = wavelengthKernel(p.wavelength, eye, share);
+    return {kernel * rgbPower(p), kernel};
 }
 
 PathGroups groupsOf(const GatherInput& input, const PhotonTreeView& tree, RunContext& run) {
@@ -116,12 +131,13 @@ PathGroups groupsOf(const GatherInput& input, const PhotonTreeView& tree, RunCon
 
 }  // namespace
 
-ClassGather::ClassGather(const GatherInput& input, PhotonClass c, IndexKind kind, const RadiusRule& rule,
-                         const ProgressiveRadius& progressive, RunContext& run)
+ClassGather::ClassGather(const GatherInput& input, PhotonClass c, const GatherSettings& settings,
+                         const RadiusRule& rule, const ProgressiveRadius& progressive, RunContext& run)
     : tree_(input.map.photons(c)),
-      index_(makeIndex(kind, tree_, run)),
+      index_(makeIndex(settings.index, tree_, run)),
       rule_(rule),
       progressive_(progressive),
+      wavelengthShare_(settings.wavelengthShare * settings.progressive.scale),
       groups_(groupsOf(input, tree_, run)),
       maxRadius_(radiusAtMean(input, c, rule.growthAtMean)),
       reach_(radiusAtMean(input, c, rule.reachAtMean)) {
@@ -134,7 +150,8 @@ ClassGather::ClassGather(const GatherInput& input, PhotonClass c, IndexKind kind
     perPath_ = paths > 0 ? 1 / static_cast<double>(paths) : 0;
     if (progressive.pilot == nullptr)
         cache_ = std::make_unique<IrradianceCache>(
-            PhotonSource{index_, extent_, groups_.all(), groups_.size(), perPath_, reach_}, rule.irradiance);
+            PhotonSource{index_, extent_, groups_.all(), groups_.size(), perPath_, reach_, input.scene.disperses()},
+            rule.irradiance);
 }
 
 DensityQuery ClassGather::densityQuery(const PhotonGatherQuery& query, GatherScratch& scratch) const {
@@ -168,7 +185,9 @@ bool ClassGather::known(const PhotonGatherQuery& query, DensityQuery& density, c
                         GatherScratch& scratch) const {
     if (cache_ == nullptr) return false;
     const auto* diffuse = std::get_if<DiffuseBsdf>(&bsdf);
-    const bool even = diffuse != nullptr && glm::dot(query.point.ng, query.point.ns) > kBentNormal;
+    // What is kept is light of all wavelengths.
+    const bool even = diffuse != nullptr && query.wavelength == kAllWavelengths &&
+                      glm::dot(query.point.ng, query.point.ns) > kBentNormal;
     const CachedLight light = cache_->at(density, even, scratch.bandwidth);
     if (!light.irradiance.empty()) {
         const Rgb albedo = diffuse->albedo * kInvPi;
@@ -206,20 +225,23 @@ const GatheredLight& ClassGather::gather(const PhotonGatherQuery& query, const B
         const uint16_t group = groups_.of(i);
         if (group == PathGroups::kNone) return;
         if (!surface.whole() && surface.hides(tree_.position(i))) return;
+        const Match match = matchOf(p, query.wavelength, wavelengthShare_);
+        if (match.kernel == 0) return;
         ++out.photons;
         auto at =
             std::find_if(out.paths.begin(), out.paths.end(), [&](const GatheredPaths& g) { return g.group == group; });
         if (at == out.paths.end()) at = out.paths.insert(at, {group});
         GatheredPaths light;
         if (flat)
-            light.diffuse = unpackPower(p.power) * kernel;
+            light.diffuse = match.power * kernel;
         else
-            scatterPhoton(p, kernel, receiver, light, scratch);
+            scatterPhoton(p, match.power * kernel, receiver, light, scratch);
         at->diffuse += light.diffuse;
         at->glossy += light.glossy;
         total.diffuse += light.diffuse;
         total.glossy += light.glossy;
-        squares += square(light.diffuse + light.glossy);
+        // Over a pixel's samples, of all wavelengths, each photon counts as often as its kernel is narrow.
+        squares += square(light.diffuse + light.glossy) / match.kernel;
     };
     const GatheredDisc disc =
         std::visit([&](const auto& index) { return gatherPhotons(index, density, scratch.density, take); }, index_);
@@ -235,7 +257,7 @@ const GatheredLight& ClassGather::gather(const PhotonGatherQuery& query, const B
 }
 
 PhotonGather::PhotonGather(const GatherInput& input, const GatherSettings& settings, RunContext& run)
-    : caustic_(input, PhotonClass::Caustic, settings.index, settings.caustic, settings.progressive, run) {
+    : caustic_(input, PhotonClass::Caustic, settings, settings.caustic, settings.progressive, run) {
     if (!settings.indirectFromMap || !input.map.stores(PhotonClass::Indirect)) return;
     RadiusRule rule = settings.indirect;
     BandwidthRule& bandwidth = rule.irradiance.bandwidth;
@@ -244,7 +266,7 @@ PhotonGather::PhotonGather(const GatherInput& input, const GatherSettings& setti
     bandwidth.leastCount = std::max(2U, static_cast<uint32_t>(static_cast<float>(bandwidth.leastCount) * shrunk));
     bandwidth.mostCount =
         std::max(bandwidth.leastCount, static_cast<uint32_t>(static_cast<float>(bandwidth.mostCount) * shrunk));
-    indirect_.emplace(input, PhotonClass::Indirect, settings.index, rule, ProgressiveRadius(), run);
+    indirect_.emplace(input, PhotonClass::Indirect, settings, rule, ProgressiveRadius(), run);
 }
 
 }  // namespace lsde

@@ -21,9 +21,10 @@ struct PhotonGatherQuery {
     bool glossyOnly = false;         // only photons flagged for Glossy vertices are of use
     bool glossyFromAll = false;      // the glossy lobe takes every photon (it is of class Diffuse)
     bool glossyFromFlagged = false;  // the glossy lobe takes flagged photons
+    WavelengthId wavelength = kAllWavelengths;  // of the path from the eye
 };
 
-// Radiance by the group of paths that the photons took.
+// Radiance by the group of paths that the photons took, in the picture's channels: wavelengths have been weighed.
 struct GatheredPaths {
     uint16_t group = 0;
     Rgb diffuse{0}, glossy{0};  // W/(m2 sr)
@@ -48,7 +49,7 @@ struct GatherScratch {
 struct ProgressiveRadius {
     const AnyIndex* pilot = nullptr;
     uint32_t k = 50;
-    float scale = 1;
+    float scale = 1;  // also of the width over which wavelengths count as one
 };
 
 // Of one class.
@@ -65,6 +66,8 @@ struct GatherSettings {
     RadiusRule caustic{{{20, 2000, 2.5F}, 300}, 1600, 20, 80, 0.5F};
     RadiusRule indirect{{{50, 8000, 2}, 25}, 8000, 50, 400, 0};
     bool indirectFromMap = true;  // where the map holds that class
+    // Width of the kernel by which a dispersed path from the eye takes dispersed photons of other wavelengths.
+    float wavelengthShare = 0.1F;
     ProgressiveRadius progressive;
 };
 
@@ -80,7 +83,7 @@ struct GatherInput {
 // Photons of one class.
 class ClassGather {
   public:
-    ClassGather(const GatherInput& input, PhotonClass c, IndexKind kind, const RadiusRule& rule,
+    ClassGather(const GatherInput& input, PhotonClass c, const GatherSettings& settings, const RadiusRule& rule,
                 const ProgressiveRadius& progressive, RunContext& run);
     ClassGather(const ClassGather&) = delete;  // the cache refers to the extent
     ClassGather& operator=(const ClassGather&) = delete;
@@ -104,6 +107,7 @@ class ClassGather {
     AnyIndex index_;
     RadiusRule rule_;
     ProgressiveRadius progressive_;
+    float wavelengthShare_;
     PathGroups groups_;
     float maxRadius_ = 0;  // m, of a growing radius
     float reach_ = 0;      // m, of the largest bandwidth

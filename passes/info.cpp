@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -168,8 +169,12 @@ InfoResult describeMap(const std::filesystem::path& file, RunContext& run) {
         const uint64_t count = map.photons(k).count;
         stored += count;
         const uint64_t landed = h.ledger.landed[static_cast<size_t>(c)];
-        j["photons"][std::string(name(k))] = {{"stored", count}, {"landed", landed}};
-        out.lines.push_back(fmt::format("{:>8}: {} photons landed, {} stored", name(k), landed, count));
+        const auto payload = map.photons(k).payload;
+        const auto dispersed = std::count_if(payload.begin(), payload.end(),
+                                             [](const PhotonPayload& p) { return p.wavelength != kAllWavelengths; });
+        j["photons"][std::string(name(k))] = {{"stored", count}, {"landed", landed}, {"dispersed", dispersed}};
+        out.lines.push_back(fmt::format("{:>8}: {} photons landed, {} stored{}", name(k), landed, count,
+                                        dispersed > 0 ? fmt::format(", {} of one wavelength", dispersed) : ""));
     }
     if (stored > 0) {
         const double each = static_cast<double>(bytes) / static_cast<double>(stored);

@@ -8,7 +8,9 @@ namespace lsde {
 namespace {
 
 // Follows single light paths and keeps their books: at every step what the path loses is entered in one column, so that
-// the columns add up to what was emitted, exactly.
+// the columns add up to what was emitted, exactly. The books are in the picture's channels: wavelengths are weighed,
+// which scenes without dispersion must not pay for.
+template <bool kDisperses>
 class LightTracer {
   public:
     LightTracer(const LightTracerInput& input, LightPaths& out) : in_(input), out_(out) {}
@@ -33,7 +35,7 @@ class LightTracer {
         index_ = index;
         stored_ = 0;
         waiting_.clear();
-        waiting_.push_back({sampler, {start.ray, start.media, start.power}});
+        waiting_.push_back({sampler, start.path()});
         while (!waiting_.empty()) {
             LightPath path = waiting_.back();
             waiting_.pop_back();
@@ -61,6 +63,12 @@ class LightTracer {
         out_.ledger[column] += FixedRgb(before) - FixedRgb(after);
     }
 
+    static Rgb inChannels(Rgb power, WavelengthId wavelength) {
+        if constexpr (kDisperses) return weighed(power, wavelength);
+        return power;
+    }
+    static Rgb carried(const LightPath& path) { return inChannels(path.state.throughput, path.state.wavelength); }
+
     void keepStart(const LightPathStart& start) {
         TracedStart& kept = out_.starts.emplace_back();
         kept.aim = {start.light, start.part, {start.u, 0}};
@@ -70,7 +78,7 @@ class LightTracer {
 
     void follow(LightPath& path) {
         for (;; ++path.depth) {
-            const Rgb before = path.state.throughput;
+            const Rgb before = carried(path);
             const uint64_t raysBefore = scratch_.rays;
             Vertex v;
             const bool arrives = advance(in_.scene, path.state, v, scratch_);
@@ -87,10 +95,10 @@ class LightTracer {
                 enter(LedgerColumn::Escaped, before);
                 return;
             }
-            move(LedgerColumn::AbsorbedVolume, before, path.state.throughput);
+            move(LedgerColumn::AbsorbedVolume, before, carried(path));
             land(v, path);
             if (path.depth >= in_.maxDepth) {
-                enter(LedgerColumn::DepthCut, path.state.throughput);
+                enter(LedgerColumn::DepthCut, carried(path));
                 return;
             }
             const auto* lambert = std::get_if<DiffuseBsdf>(&v.bsdf);
@@ -112,8 +120,7 @@ class LightTracer {
                                                      : PhotonClass::Direct;
         const MeshInfo& info = in_.scene.meshes()[v.surface.mesh];
         ++out_.ledger.landed[static_cast<size_t>(c)];
-        out_.ledger.flux[static_cast<size_t>(c) * in_.scene.objects().size() + info.object] +=
-            FixedRgb(path.state.throughput);
+        out_.ledger.flux[static_cast<size_t>(c) * in_.scene.objects().size() + info.object] += FixedRgb(carried(path));
         if (!info.receiver || !holds(in_.store, c)) return;
         Photon photon;
         photon.position = v.surface.position;
@@ -125,6 +132,7 @@ class LightTracer {
         photon.medium = v.medium;
         photon.flags = static_cast<uint16_t>((delta_ ? kFromDeltaLight : 0) |
                                              (path.walk.causticAtGlossy(delta_) ? kGlossyGather : 0));
+        photon.wavelength = path.state.wavelength;
         photon.path = path.code;
         photon.key = hashCombine(in_.seed, hashCombine(index_, stored_++));
         if (path.code.overflowed()) ++out_.ledger.unclassified;
@@ -144,10 +152,10 @@ class LightTracer {
         out_.afterDiffuse.lobePaths += static_cast<double>(lobe);
         if (aim.share() > 0) out_.afterDiffuse.seeingPaths += static_cast<double>(lobe);
         out_.afterDiffuse.inCones += static_cast<double>(lobe * aim.share());
-        enter(LedgerColumn::Roulette, arriving);
+        enter(LedgerColumn::Roulette, carried(path));
         ++path.depth;
         for (uint32_t i = 0; i < count; ++i) {
-            out_.ledger[LedgerColumn::Roulette] -= FixedRgb(each);
+            out_.ledger[LedgerColumn::Roulette] -= FixedRgb(inChannels(each, path.state.wavelength));
             LightPath copy = path;
             if (count > 1) copy.sampler = path.sampler.fork(i);
             copy.state.throughput = each;
@@ -157,7 +165,7 @@ class LightTracer {
 
     // False: the path ended, and its power has been entered.
     bool leaveLambertian(const Vertex& v, const DiffuseBsdf& lambert, const DiffuseAim::At& aim, LightPath& path) {
-        const Rgb arriving = path.state.throughput;
+        const Rgb arriving = carried(path);
         const float uChoice = path.sampler.next();
         DiffuseAim::Direction next;
         const Rgb scattered = arriving * lambert.albedo;
@@ -175,7 +183,8 @@ class LightTracer {
     }
 
     bool bounce(const Vertex& v, LightPath& path) {
-        const Rgb arriving = path.state.throughput;
+        const Rgb arriving = carried(path);
+        const Rgb power = path.state.throughput;
         BsdfSample sample;
         const float uLobe = path.sampler.next();
         const Vec2 u = path.sampler.next2D();
@@ -189,16 +198,19 @@ class LightTracer {
             enter(LedgerColumn::Continued, scattered);
             return false;
         }
-        return leave(v, sample, path) && roulette(arriving, path);
+        return leave(v, sample, path) && roulette(power, path);
     }
 
     bool leave(const Vertex& v, const BsdfSample& sample, LightPath& path) {
-        const Rgb sampled = path.state.throughput * sample.weight;
+        const WavelengthId before = path.state.wavelength;
+        const Rgb sampled = carried(path) * sample.weight;
         if (!scatter(v, sample, Quantity::Power, path.state)) {
             enter(LedgerColumn::ShadingNormal, sampled);
             return false;
         }
-        move(LedgerColumn::ShadingNormal, sampled, path.state.throughput);
+        const Rgb scattered = inChannels(path.state.throughput, before);
+        move(LedgerColumn::ShadingNormal, sampled, scattered);
+        if constexpr (kDisperses) move(LedgerColumn::Sampling, scattered, carried(path));
         path.walk.pass(classOf(v.bsdf, sample));
         path.code.append(sample.event);
         return true;
@@ -206,15 +218,15 @@ class LightTracer {
 
     // By what a path lost at a surface, so that what is kept has even power.
     bool roulette(Rgb arriving, LightPath& path) {
-        const Rgb before = path.state.throughput;
-        const float keep = std::min(1.0F, maxComponent(before) / maxComponent(arriving));
+        const Rgb before = carried(path);
+        const float keep = std::min(1.0F, maxComponent(path.state.throughput) / maxComponent(arriving));
         if (keep >= 1) return true;
         if (path.sampler.next() >= keep) {
             enter(LedgerColumn::Roulette, before);
             return false;
         }
         path.state.throughput /= keep;
-        move(LedgerColumn::Roulette, before, path.state.throughput);
+        move(LedgerColumn::Roulette, before, carried(path));
         return true;
     }
 
@@ -253,9 +265,14 @@ AfterDiffuse& AfterDiffuse::operator+=(const AfterDiffuse& other) {
 LightPaths traceLightPaths(const LightTracerInput& input, uint64_t begin, uint64_t end) {
     LightPaths out;
     out.ledger = Ledger(input.scene.lights().size(), input.scene.objects().size());
-    LightTracer tracer(input, out);
-    for (uint64_t path = begin; path < end; ++path) tracer.trace(path);
-    out.rays = tracer.rays();
+    const auto traceAll = [&](auto&& tracer) {
+        for (uint64_t path = begin; path < end; ++path) tracer.trace(path);
+        out.rays = tracer.rays();
+    };
+    if (input.scene.disperses())
+        traceAll(LightTracer<true>(input, out));
+    else
+        traceAll(LightTracer<false>(input, out));
     return out;
 }
 

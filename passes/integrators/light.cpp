@@ -77,12 +77,12 @@ class LightIntegrator : public Integrator {
             Sampler sampler = Sampler::sequence(self.seed_, Stage::LightTracer, index);
             LightPathStart start;
             if (!self.sources_.sample(sampler, start)) return;
-            PathState path{start.ray, start.media, start.power};
+            PathState path = start.path();
             LightPathState state = self.layers_.filter().light();
             for (int depth = 0; depth < kLongestPath && advance(self.scene_, path, v, scratch); ++depth) {
                 const Rgb arriving = path.throughput;
                 const Vec2 lens = self.camera_.description().kind == CameraKind::ThinLens ? sampler.next2D() : Vec2(0);
-                connect(path.throughput, state, lens);
+                connect(path.rgb(), state, lens);
                 BsdfSample sample;
                 const float uLobe = sampler.next();
                 if (!sampleBsdf(v.bsdf, v.wo, uLobe, sampler.next2D(), sample)) return;

@@ -17,25 +17,21 @@ constexpr double kBalanceTolerance = 3;
 constexpr float kDense = 4;
 constexpr uint32_t kFewDense = 3;
 
-// Moments of the photons between one radius and the next smaller one.
-struct Ring {
-    double count = 0;
-    uint32_t dense = 0;                 // photons among many more than the estimate has, see kDense
+// Moments of the power of photons.
+struct Moments {
     double p = 0, pd2 = 0;              // sums of power, times distance^2
     double pp = 0, ppd2 = 0, ppd4 = 0;  // of power^2, times distance^2 and ^4
     Vec3 moment{0};                     // sum of power times offset from the middle
 
     void add(double power, Vec3 offset, double d2) {
         moment += static_cast<float>(power) * offset;
-        ++count;
         p += power;
         pd2 += power * d2;
         pp += power * power;
         ppd2 += power * power * d2;
         ppd4 += power * power * d2 * d2;
     }
-    void add(const Ring& r) {
-        count += r.count;
+    void add(const Moments& r) {
         p += r.p;
         pd2 += r.pd2;
         pp += r.pp;
@@ -45,17 +41,47 @@ struct Ring {
     }
 };
 
+// What the power of a photon is judged by: the sum of its channels, or each of them.
+template <size_t kSignals>
+std::array<float, kSignals> signalsOf(const PhotonPayload& p) {
+    if constexpr (kSignals == 1) {
+        const Rgb power = unpackPower(p.power);
+        return {power.x + power.y + power.z};
+    } else {
+        const Rgb power = rgbPower(p);
+        return {power.x, power.y, power.z};
+    }
+}
+
+// The photons between one radius and the next smaller one.
+template <size_t kSignals>
+struct Ring {
+    double count = 0;
+    uint32_t dense = 0;  // photons among many more than the estimate has, see kDense
+    std::array<Moments, kSignals> signals;
+
+    void add(const std::array<float, kSignals>& powers, Vec3 offset, double d2) {
+        ++count;
+        for (size_t s = 0; s < kSignals; ++s) signals[s].add(static_cast<double>(powers[s]), offset, d2);
+    }
+    void add(const Ring& r) {
+        count += r.count;
+        for (size_t s = 0; s < kSignals; ++s) signals[s].add(r.signals[s]);
+    }
+};
+
 struct Estimate {
     double value = 0, variance = 0;
 };
 
 // By Epanechnikov's kernel, up to a factor that all radii share.
-Estimate estimateOf(const Ring& within, double r2, double share) {
+Estimate estimateOf(const Moments& within, double r2, double share) {
     const double scale = 1 / (r2 * share);
     return {scale * (within.p - within.pd2 / r2),
             scale * scale * (within.pp - 2 * within.ppd2 / r2 + within.ppd4 / (r2 * r2))};
 }
 
+template <size_t kSignals>
 class RadiusSearch {
   public:
     RadiusSearch(const PhotonSource& source, uint32_t photon, const BandwidthRule& rule, BandwidthScratch& scratch)
@@ -65,9 +91,8 @@ class RadiusSearch {
         source_.extent.around(query_.point.position, query_.point.ng, query_.maxRadius, scratch_.surface);
         r0_ = std::visit([&](const auto& index) { return distanceTo(index, rule_.leastCount); }, source_.index);
         if (r0_ >= query_.maxRadius) return {query_.maxRadius, static_cast<uint32_t>(scratch_.density.accepted.size())};
-        std::array<Estimate, kMostLevels> estimates;
         int known = 0;
-        Ring within;
+        Ring<kSignals> within;
         for (int level = 0;; ++level) {
             if (level == known) {
                 const int more = std::min(known + 2, kMostLevels);
@@ -75,26 +100,17 @@ class RadiusSearch {
                 known = more;
             }
             const float r2 = r0_ * r0_ * static_cast<float>(1 << level);
-            const Ring& ring = rings_[static_cast<size_t>(level)];
+            const Ring<kSignals>& ring = rings_[static_cast<size_t>(level)];
             // Light that sets in at an edge is plain in the ring, long before the kernel, which ends there, takes it
             // in.
             if (level > 0 && ring.dense >= kFewDense) return atLevel(level - 1, within.count);
-            if (level > 0 && square(ring.p - within.p) > square(kRingTolerance) * (ring.pp + within.pp))
-                return atLevel(level - 1, within.count);
+            if (level > 0 && anotherPower(ring, within)) return atLevel(level - 1, within.count);
             within.add(ring);
             // On an edge discs agree with each other at whatever radius: each is half lit.
-            if (level > 0 && scratch_.surface.whole() && liesToOneSide(within.moment, within.ppd2, kBalanceTolerance))
+            if (level > 0 && scratch_.surface.whole() && toOneSide(within))
                 return atLevel(level - 1, within.count - ring.count);
-            Estimate& e = estimates[static_cast<size_t>(level)];
-            e = estimateOf(within, r2, scratch_.surface.share(std::min(std::sqrt(r2), query_.maxRadius)));
-            for (int smaller = 0; smaller < level; ++smaller) {
-                // The difference's variance if light were as even as the larger one has it. The smaller one's own would
-                // be low where it is too low itself, which would choose radii by their error's sign.
-                const double variance = e.variance * static_cast<double>(1 << (level - smaller));
-                if (square(e.value - estimates[static_cast<size_t>(smaller)].value) >
-                    square(rule_.tolerance) * variance)
-                    return atLevel(level - 1, within.count - ring.count);
-            }
+            estimate(level, within, r2);
+            if (!consistent(level)) return atLevel(level - 1, within.count - ring.count);
             const bool last = level + 1 == kMostLevels || 2 * r2 > square(query_.maxRadius) ||
                               2 * within.count > static_cast<double>(rule_.mostCount);
             if (last) return atLevel(level, within.count);
@@ -102,6 +118,38 @@ class RadiusSearch {
     }
 
   private:
+    static bool anotherPower(const Ring<kSignals>& ring, const Ring<kSignals>& within) {
+        for (size_t s = 0; s < kSignals; ++s) {
+            const Moments &outer = ring.signals[s], &inner = within.signals[s];
+            if (square(outer.p - inner.p) > square(kRingTolerance) * (outer.pp + inner.pp)) return true;
+        }
+        return false;
+    }
+    static bool toOneSide(const Ring<kSignals>& within) {
+        return std::any_of(within.signals.begin(), within.signals.end(),
+                           [](const Moments& m) { return liesToOneSide(m.moment, m.ppd2, kBalanceTolerance); });
+    }
+    void estimate(int level, const Ring<kSignals>& within, float r2) {
+        const float share = scratch_.surface.share(std::min(std::sqrt(r2), query_.maxRadius));
+        for (size_t s = 0; s < kSignals; ++s)
+            estimates_[s][static_cast<size_t>(level)] = estimateOf(within.signals[s], r2, share);
+    }
+    // With the estimates of all smaller levels.
+    bool consistent(int level) const {
+        for (const auto& estimates : estimates_) {
+            const Estimate& e = estimates[static_cast<size_t>(level)];
+            for (int smaller = 0; smaller < level; ++smaller) {
+                // The difference's variance if light were as even as the larger one has it. The smaller one's own would
+                // be low where it is too low itself, which would choose radii by their error's sign.
+                const double variance = e.variance * static_cast<double>(1 << (level - smaller));
+                if (square(e.value - estimates[static_cast<size_t>(smaller)].value) >
+                    square(rule_.tolerance) * variance)
+                    return false;
+            }
+        }
+        return true;
+    }
+
     Bandwidth atLevel(int level, double count) const {
         return {r0_ * std::sqrt(static_cast<float>(1 << level)), static_cast<uint32_t>(count)};
     }
@@ -126,10 +174,9 @@ class RadiusSearch {
             if (level < from || level >= to || c.index == photon_) continue;
             if (source_.groups[c.index] >= source_.groupCount) continue;
             if (!scratch_.surface.whole() && scratch_.surface.hides(index.tree().position(c.index))) continue;
-            const Rgb power = unpackPower(index.tree().payload[c.index].power);
-            Ring& ring = rings_[static_cast<size_t>(level)];
-            ring.add(power.x + power.y + power.z, index.tree().position(c.index) - query_.point.position,
-                     c.distanceSquared);
+            Ring<kSignals>& ring = rings_[static_cast<size_t>(level)];
+            ring.add(signalsOf<kSignals>(index.tree().payload[c.index]),
+                     index.tree().position(c.index) - query_.point.position, c.distanceSquared);
             if (level > 0 && isDense(index.tree(), c.index / kBlockSize)) ++ring.dense;
         }
     }
@@ -149,7 +196,8 @@ class RadiusSearch {
     float r0_ = 0;  // m
     uint32_t lastBlock_ = ~0U;
     bool lastIsDense_ = false;
-    std::array<Ring, kMostLevels> rings_{};
+    std::array<Ring<kSignals>, kMostLevels> rings_{};
+    std::array<std::array<Estimate, kMostLevels>, kSignals> estimates_;
 };
 
 }  // namespace
@@ -169,7 +217,8 @@ DensityQuery queryAt(const PhotonSource& source, uint32_t photon) {
 
 Bandwidth consistentBandwidth(const PhotonSource& source, uint32_t photon, const BandwidthRule& rule,
                               BandwidthScratch& scratch) {
-    return RadiusSearch(source, photon, rule, scratch).run();
+    if (source.dispersed) return RadiusSearch<3>(source, photon, rule, scratch).run();
+    return RadiusSearch<1>(source, photon, rule, scratch).run();
 }
 
 }  // namespace lsde

@@ -17,6 +17,7 @@ struct PhotonSource {
     size_t groupCount = 0;             // photons of higher groups do not take part
     double perPath = 0;                // 1 / emitted paths
     float maxRadius = 0;               // m, of an estimate
+    bool dispersed = false;            // some photons have a wavelength: colours are to be kept apart
 
     const PhotonTreeView& photons() const {
         return std::visit([](const auto& i) -> const PhotonTreeView& { return i.tree(); }, index);
@@ -49,7 +50,8 @@ struct Bandwidth {
 // which it ends where the power in the outer ring is plainly another, a few photons there lie far denser, or the power
 // within lies to one side. Where
 // light is smooth the radius grows as long as it pays, at edges it stays small. The photon itself is left out: it is
-// there for certain.
+// there for certain. Power is the channels' sum; of dispersed light all must hold for each channel, since a rainbow may
+// be as bright throughout.
 Bandwidth consistentBandwidth(const PhotonSource& source, uint32_t photon, const BandwidthRule& rule,
                               BandwidthScratch& scratch);
 

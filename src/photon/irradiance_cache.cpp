@@ -74,8 +74,7 @@ void IrradianceCache::make(Record& record, const BandwidthRule& rule, std::span<
         if (group >= source_.groupCount || !(c.entrySquared < radiusSquared)) continue;
         if (!scratch.surface.whole() && scratch.surface.hides(photons_.position(c.index))) continue;
         const float weight = c.index == record.photon ? kOwnWeight : 1;
-        const Rgb e =
-            unpackPower(photons_.payload[c.index].power) * (weight * epanechnikov(c.distanceSquared, radiusSquared));
+        const Rgb e = rgbPower(photons_.payload[c.index]) * (weight * epanechnikov(c.distanceSquared, radiusSquared));
         irradiance[group] += e;
         irradiance.back() += e;
         record.variance += e * e;

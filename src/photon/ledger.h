@@ -20,7 +20,8 @@ enum class LedgerColumn : uint8_t {
     Continued,  // scattered at a Diffuse vertex where the walk ends: the camera pass goes on from there
     DepthCut,
     Roulette,       // lost - gained; zero on average
-    Sampling,       // emitted - sampled at the lights, and albedo - weight at surfaces; zero on average
+    Sampling,       // emitted - sampled at the lights, albedo - weight at surfaces, and all wavelengths - the one drawn
+                    // where light disperses; zero on average
     ShadingNormal,  // lost - gained by Veach's correction for shading normals
 };
 inline constexpr int kLedgerColumns = 9;

@@ -91,7 +91,7 @@ class ClassChecker {
         if (p.light >= lights_) return problem(fmt::format("light {}, expected one of {}", p.light, lights_));
         if (!PathCode(p.path).valid()) return problem(fmt::format("path {:016x}, expected events of a path", p.path));
         if ((p.flags & ~kAllPhotonFlags) != 0)
-            return problem(fmt::format("flags {:x}, expected none but {:x}", p.flags, kAllPhotonFlags));
+            return problem(fmt::format("flags {:x}, expected none but {:x}", int{p.flags}, kAllPhotonFlags));
         return {};
     }
 

@@ -15,7 +15,7 @@
 namespace lsde {
 
 // Of the file's format: sections, records and header.
-inline constexpr uint32_t kMapVersion = 2;
+inline constexpr uint32_t kMapVersion = 3;
 
 enum class PhotonClass : uint8_t { Caustic = 0, Indirect = 1, Direct = 2 };
 inline constexpr int kPhotonClasses = 3;

@@ -18,8 +18,11 @@ constexpr const char* kRecord =
     "CLASS.blocks: 16 photons, f32 x[16] y[16] z[16], absent 1e30; CLASS.payload: u64 events, 2 bits each from the "
     "lowest (0 D, 1 G, 2 S), their number in bits 58-62, bit 63: there were more; u32 power, mantissas R G B of 8 bits "
     "from the lowest in units of 2^(e - 136) W, e in the upper 8 bits; u32 direction to the light, octahedral 16 + 16; "
-    "u16 normal, octahedral 8 + 8; u16 light; u16 medium; u16 flags (1: delta light, 2: counts at glossy surfaces, "
-    "4: landed on the normal's side)";
+    "u16 normal, octahedral 8 + 8; u16 light; u16 medium; u16 flags in the lowest 4 bits (1: delta light, 2: counts at "
+    "glossy surfaces, 4: landed on the normal's side) and wavelength in the others (0: not dispersed; else one of 4095 "
+    "in ascending order, equally likely under a density that goes by the sum of the channels' |sensitivity| to D65; "
+    "the "
+    "power is to be multiplied by the channels' sensitivity over that density)";
 
 // ------------------------------------------------------------------------------------------------------------- writing
 

@@ -21,8 +21,10 @@ void checkDirection(Vec3 v, const char* what) {
 
 bool operator<(const PackedPhoton& a, const PackedPhoton& b) {
     const auto key = [](const PackedPhoton& p) {
-        return std::tie(p.position.x, p.position.y, p.position.z, p.payload.path, p.payload.power, p.payload.direction,
-                        p.payload.normal, p.payload.light, p.payload.medium, p.payload.flags);
+        // By value: nothing refers to a part of 16 bits.
+        return std::make_tuple(p.position.x, p.position.y, p.position.z, p.payload.path, p.payload.power,
+                               p.payload.direction, p.payload.normal, p.payload.light, p.payload.medium,
+                               p.payload.flags, p.payload.wavelength);
     };
     return key(a) < key(b);
 }
@@ -39,7 +41,8 @@ PackedPhoton pack(const Photon& photon) {
     packed.payload.light = photon.light;
     packed.payload.medium = photon.medium;
     const bool front = glm::dot(photon.direction, photon.ng) > 0;
-    packed.payload.flags = static_cast<uint16_t>((photon.flags & ~kLandedOnFront) | (front ? kLandedOnFront : 0));
+    packed.payload.flags = (photon.flags & ~kLandedOnFront & kAllPhotonFlags) | (front ? kLandedOnFront : 0);
+    packed.payload.wavelength = photon.wavelength & 0xfff;
     return packed;
 }
 

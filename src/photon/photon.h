@@ -7,20 +7,23 @@
 #include "base/math.h"
 #include "path/path_code.h"
 #include "photon/octahedral.h"
+#include "sampling/wavelength.h"
 
 namespace lsde {
 
 // A photon as emission makes it.
 struct Photon {
     Vec3 position{0};     // m
-    Rgb power{0};         // W of one path: divide by the number of paths emitted at the gather
+    Rgb power{0};         // W of one path: divide by the number of paths emitted at the gather; before the weight of
+                          // its wavelength, so that no channel is negative
     Vec3 direction{0};    // unit, points back to where the light came from (wi of the surface)
     Vec3 ng{0};           // geometric normal of the surface hit, unit, on the mesh's front side
     uint16_t light = 0;   // index of the source
     uint16_t medium = 0;  // medium in which it landed (0: none, the outside)
     uint16_t flags = 0;   // PhotonFlag
-    PathCode path;        // events after L and before the surface it landed on
-    uint64_t key = 0;     // a number of this photon alone (path index and bounce), for unbiased rounding; not stored
+    WavelengthId wavelength = kAllWavelengths;  // if it was dispersed
+    PathCode path;                              // events after L and before the surface it landed on
+    uint64_t key = 0;  // a number of this photon alone (path index and bounce), for unbiased rounding; not stored
 };
 
 enum PhotonFlag : uint16_t {
@@ -39,9 +42,11 @@ struct PhotonPayload {
     uint16_t normal = 0;     // octahedral, 8 + 8 bits
     uint16_t light = 0;
     uint16_t medium = 0;
-    uint16_t flags = 0;
+    uint16_t flags : 4 = 0;
+    uint16_t wavelength : 12 = kAllWavelengths;
 };
 static_assert(sizeof(PhotonPayload) == 24);
+static_assert(kAllPhotonFlags < 1 << 4 && kWavelengths < 1 << 12);
 
 // A photon on its way into a tree. Totally ordered by value (operator<), so that a tree depends on the set alone.
 struct PackedPhoton {
@@ -69,6 +74,9 @@ inline Rgb unpackPower(uint32_t rgbe) {
     const auto unit = std::bit_cast<float>(static_cast<uint32_t>(exponent - kPowerExponentBias + 127) << 23);
     return unit * Rgb(rgbe & 255, rgbe >> 8 & 255, rgbe >> 16 & 255);
 }
+
+// Of a stored photon in the picture's channels, which of a single wavelength may be negative.
+inline Rgb rgbPower(const PhotonPayload& p) { return weighed(unpackPower(p.power), p.wavelength); }
 
 inline uint32_t packDirection(Vec3 unit) { return Octahedral<16>::pack(unit); }
 inline Vec3 unpackDirection(uint32_t octahedral) { return Octahedral<16>::unpack(octahedral); }

@@ -100,6 +100,7 @@ void add(Hasher& h, const Material& m) {
     h.value(m.metallic);
     h.value(m.roughness);
     h.value(m.ior);
+    h.value(m.dispersion);
     h.value(m.specular);
     h.value(m.specularColor);
     h.value(m.transmission);

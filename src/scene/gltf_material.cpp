@@ -77,6 +77,15 @@ void readVolume(const JsonObject& root, const JsonObject& object, Material& m) {
     if (thickness > 0) m.volume = v;
 }
 
+void readDispersion(const JsonObject& object, Material& m, Warnings& warnings) {
+    const auto dispersion = object.extension("KHR_materials_dispersion");
+    if (!dispersion) return;
+    m.dispersion = factor(*dispersion, "dispersion", 0, kNotNegative);
+    if (m.dispersion > 0 && !m.isSolid())
+        warnings.add("dispersion has no effect on what is not a solid (KHR_materials_transmission and _volume)",
+                     object.where());
+}
+
 // What is rendered otherwise than the extension says goes into a warning.
 void readTransmission(const JsonObject& root, const JsonObject& object, Material& m, Warnings& warnings) {
     if (const auto transmission = object.extension("KHR_materials_transmission")) {
@@ -208,6 +217,7 @@ GltfMaterial readMaterial(const JsonObject& root, const JsonObject& object, Warn
     if (const auto pbr = object.object("pbrMetallicRoughness")) readMetallicRoughness(root, *pbr, m);
     readSpecular(root, object, m);
     readTransmission(root, object, m, warnings);
+    readDispersion(object, m, warnings);
     readEmission(root, object, m);
     m.normalTexture = readTexture(root, object, "normalTexture");
     if (m.normalTexture) m.normalScale = factor(*object.object("normalTexture"), "scale", 1, kAnyNumber);

@@ -72,6 +72,7 @@ struct Material {
     float transmission = 0;          // KHR_materials_transmission.transmissionFactor
     TextureRef transmissionTexture;  // r
     std::optional<VolumeProperties> volume;
+    float dispersion = 0;  // KHR_materials_dispersion: 20 / Abbe number; of solids
 
     TextureRef normalTexture;  // x along the tangent, y along the bitangent, z along the normal, from [0,1] to [-1,1]
     float normalScale = 1;     // of x and y

@@ -13,9 +13,10 @@ using MediumId = uint16_t;
 inline constexpr MediumId kOutside = 0;  // no solid: air, ior 1, no absorption
 
 struct Medium {
-    float ior = 1;
-    Rgb absorption{0};  // 1/m (Beer-Lambert): -ln(attenuationColor) / attenuationDistance
-    int priority = 0;   // larger wins where solids overlap; ties: the one entered first
+    float ior = 1;         // at 587.6 nm, helium's d line, if it disperses
+    Rgb absorption{0};     // 1/m (Beer-Lambert): -ln(attenuationColor) / attenuationDistance
+    int priority = 0;      // larger wins where solids overlap; ties: the one entered first
+    float dispersion = 0;  // 20 / Abbe number V_d (KHR_materials_dispersion); 0: none
 };
 
 // The solids around a point, in the order in which they were entered.

@@ -57,6 +57,7 @@ class Scene {
     const std::vector<Caster>& casters() const { return casters_; }
     const Sphere& boundingSphere() const { return boundingSphere_; }
     bool hasThinWalls() const { return hasThinWalls_; }
+    bool disperses() const { return disperses_; }  // the refractive index of some medium varies with the wavelength
     const Accel& accel() const { return accel_; }
 
     Surface surface(const Hit& hit) const;
@@ -118,6 +119,7 @@ class Scene {
     Sphere boundingSphere_;
     Bounds bounds_;
     bool hasThinWalls_ = false;
+    bool disperses_ = false;
 };
 
 // Whether light leaves this material by an event of class Bend or Glossy (path/event.h).

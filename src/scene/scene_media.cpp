@@ -55,6 +55,9 @@ void Scene::buildMedia() {
                 throw Error(fmt::format("{}: more than 65000 solids", description_.file.string()));
             Medium medium;
             medium.ior = material.ior;
+            // What does not refract, or what is taken for a mirror (ior 0), does not disperse.
+            medium.dispersion = material.ior > 1 ? material.dispersion : 0;
+            disperses_ |= medium.dispersion > 0;
             medium.priority = mesh.priority;
             const VolumeProperties& v = *material.volume;
             if (std::isfinite(v.attenuationDistance))

@@ -268,6 +268,7 @@ bool EmissionSampler::sample(Sampler& sampler, LightPathStart& start) const {
     choice.skipTo(4);
     float u = choice.next();
     start.light = choice_.sample(u);
+    start.reserved = reserveWavelength(scene_, sampler);
     const Aim& aim = aims_[start.light];
     start.part = aim.parts.sample(u);
     const Light& light = scene_.lights()[start.light];

@@ -28,11 +28,14 @@ inline constexpr AimShares kAimedSeen{0.8F, 0};            // all that is lit is
 struct LightPathStart {
     Ray ray;
     MediaStack media;
-    Rgb power{0};  // W of this path: the light's emission over the density of all choices
+    Rgb power{0};                             // W of this path: the light's emission over the density of all choices
+    WavelengthId reserved = kAllWavelengths;  // see PathState
     size_t light = 0;
     float aimWeight = 1;  // whole / mixture density
     size_t part = 0;      // of the mixture; 0: the whole emission
     PrimaryPoint u{};     // as used: position (where it is chosen), then direction; infinite lights: the other way
+
+    PathState path() const { return {ray, media, power, reserved}; }
 };
 
 // A path that was tried, to learn from.
@@ -51,8 +54,8 @@ class EmissionSampler {
     void learn(std::span<const AimTrial> trials);
 
     // Takes the sampler's first dimensions: position 0-1, direction 2-3 (0-1 where a light has no choice of position),
-    // choice of light and part 4, side 5. False: this start carries no light (below an emitter's horizon, outside a
-    // spot's cone).
+    // choice of light and part 4, side 5; and the number of the wavelength. False: this start carries no light (below
+    // an emitter's horizon, outside a spot's cone).
     bool sample(Sampler& sampler, LightPathStart& start) const;
 
     Rgb totalPower() const { return totalPower_; }  // W, of the lights that take part

@@ -17,6 +17,7 @@ struct Vertex {
     MediumId medium = kOutside;  // dominant one on wo's side
     float distance = 0;          // m travelled to get here
     bool interface = false;      // bounds a solid
+    bool disperses = false;      // what it scatters depends on the wavelength
 
     // The solids around light on wo's side, or around what goes through the surface.
     const MediaStack& media(bool through) const { return through && interface ? behind : before; }

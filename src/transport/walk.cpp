@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "bsdf/cauchy.h"
+
 namespace lsde {
 
 namespace {
@@ -10,9 +12,10 @@ namespace {
 constexpr int kMostCrossings = 1000;
 
 // Refractive index of a medium: glTF's ior 0 stands for an infinite one.
-float iorOf(const Scene& scene, MediumId m) {
-    const float ior = scene.media()[m].ior;
-    return ior == 0 ? 1e6F : ior;
+float iorOf(const Medium& m, WavelengthId wavelength) {
+    if (m.dispersion > 0 && wavelength != kAllWavelengths)
+        return cauchyIor(m.ior, m.dispersion, wavelengthNm(wavelength));
+    return m.ior == 0 ? 1e6F : m.ior;
 }
 
 // Where a ray arrives: a surface, and the solids before and behind it.
@@ -103,7 +106,9 @@ bool advance(const Scene& scene, PathState& path, Vertex& vertex, WalkScratch& s
         vertex.frame = Frame(s.ns);
         vertex.wo = vertex.frame.toLocal(vertex.woWorld);
         const bool fromFront = glm::dot(s.ng, vertex.woWorld) > 0;
-        const float iorBefore = iorOf(scene, before), iorBehind = iorOf(scene, behind);
+        const Medium &in = scene.media()[before], &out = scene.media()[behind];
+        const float iorBefore = iorOf(in, path.reserved), iorBehind = iorOf(out, path.reserved);
+        vertex.disperses = interface && in.dispersion + out.dispersion > 0;
         vertex.bsdf = scene.bsdf(s, fromFront ? iorBefore : iorBehind, fromFront ? iorBehind : iorBefore);
         return true;
     }
@@ -118,6 +123,7 @@ bool scatter(const Vertex& vertex, const BsdfSample& sample, Quantity quantity, 
     if ((woNg * wiNg > 0) == sample.transmitted) return false;
     if (woNg * vertex.wo.z <= 0 || wiNg * sample.wi.z <= 0) return false;
     path.throughput *= sample.weight;
+    if (vertex.disperses) path.wavelength = path.reserved;
     if (quantity == Quantity::Radiance)
         path.throughput /= square(sample.eta);
     else

@@ -3,6 +3,8 @@
 
 #include <vector>
 
+#include "sampling/sampler.h"
+#include "sampling/wavelength.h"
 #include "transport/vertex.h"
 
 namespace lsde {
@@ -14,8 +16,19 @@ enum class Quantity : uint8_t { Radiance, Power };
 struct PathState {
     Ray ray;
     MediaStack media;   // around the ray's origin
-    Rgb throughput{1};  // eye: dimensionless; light: W
+    Rgb throughput{1};  // eye: dimensionless; light: W; before the weight of its wavelength
+    // The wavelength that it will have once it disperses, drawn at its start; kAllWavelengths where nothing disperses.
+    WavelengthId reserved = kAllWavelengths;
+    WavelengthId wavelength = kAllWavelengths;  // the one that it has
+
+    // The throughput in the picture's channels.
+    Rgb rgb() const { return weighed(throughput, wavelength); }
 };
+
+// For a path that starts with the sampler.
+inline WavelengthId reserveWavelength(const Scene& scene, const Sampler& sampler) {
+    return scene.disperses() ? sampleWavelength(sampler.wavelengthNumber()) : kAllWavelengths;
+}
 
 // Scratch of one thread.
 struct WalkScratch {
@@ -28,7 +41,8 @@ struct WalkScratch {
 bool advance(const Scene& scene, PathState& path, Vertex& vertex, WalkScratch& scratch);
 
 // Leaves the vertex by the sample. False if nothing is carried on: the sampled direction's geometric and shading sides
-// differ, or the throughput is zero.
+// differ, or the throughput is zero. Where the surface disperses, the path has a wavelength from here on, whichever way
+// it goes: what is reflected depends on the wavelength as well, most of all near total reflection.
 bool scatter(const Vertex& vertex, const BsdfSample& sample, Quantity quantity, PathState& path);
 
 // Light along a segment that starts at a vertex: 0 if something is in the way before `distance` (m; may be infinite);

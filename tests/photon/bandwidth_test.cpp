@@ -119,3 +119,29 @@ TEST_CASE("where there are fewer photons than the least disc holds the bandwidth
     for (uint32_t i = 0; i < square.tree.count; ++i)
         CHECK(consistentBandwidth(square.source(), i, kRule, scratch).radius == 0.5F);
 }
+
+TEST_CASE("a bandwidth ends where the colour of dispersed light changes, though its brightness does not") {
+    // Two wavelengths with weights that sum to the same, one either side of the edge.
+    Square square(9, 20'000, 1);
+    constexpr WavelengthId kBlue = 400, kRed = 3600;
+    const auto sum = [](Rgb c) { return c.x + c.y + c.z; };
+    WavelengthId red = kRed;
+    while (std::fabs(sum(wavelengthWeight(red)) - sum(wavelengthWeight(kBlue))) > 0.02F) --red;
+    for (uint32_t i = 0; i < square.tree.count; ++i)
+        square.tree.payload[i].wavelength = positionOf(square, i).x < 0 ? kBlue : red;
+    square.index = AnyIndex(KdIndex(view(square.tree)));
+    BandwidthScratch scratch;
+    float beyond[2] = {0, 0};
+    for (const bool dispersed : {false, true})
+        for (uint32_t i = 0; i < square.tree.count; i += 7) {
+            const Vec3 p = positionOf(square, i);
+            if (p.x > -0.02F || p.x < -0.1F || std::fabs(p.y) > 0.8F) continue;
+            PhotonSource source = square.source();
+            source.dispersed = dispersed;
+            beyond[dispersed ? 1 : 0] =
+                std::max(beyond[dispersed ? 1 : 0], consistentBandwidth(source, i, kRule, scratch).radius + p.x);
+        }
+    MESSAGE("beyond the edge at most: ", beyond[0], " and ", beyond[1], " m");
+    CHECK(beyond[0] > 0.05F);
+    CHECK(beyond[1] < 0.02F);
+}

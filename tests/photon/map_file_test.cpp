@@ -262,7 +262,7 @@ TEST_CASE_FIXTURE(Fixture, "records that emission cannot have made are refused b
     CHECK(
         contains(error([](Sections& s) { s.payload[7].light = 2; }), "section \"caustic.payload\": record 7: light 2"));
     CHECK(contains(error([](Sections& s) { s.payload[8].path = 3; }), "record 8: path"));
-    CHECK(contains(error([](Sections& s) { s.payload[9].flags = 64; }), "record 9: flags"));
+    CHECK(contains(error([](Sections& s) { s.payload[9].flags = 8; }), "record 9: flags"));
     CHECK(contains(error([](Sections& s) { s.blocks[3].y[5] += 1; }), "section \"caustic.nodes\""));
     CHECK(contains(error([](Sections& s) { s.nodes.back().loX[7] = 0; }), "section \"caustic.nodes\": record"));
     CHECK(contains(error([&](Sections& s) { s.nodes[0].hiZ[0] = nan; }), "section \"caustic.nodes\": record 0"));

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <cstring>
 #include <limits>
 
 #include "base/error.h"
@@ -103,4 +104,29 @@ TEST_CASE("photons that are not finite are refused, not stored") {
         if (field == 4) p.ng = Vec3(0);
         CHECK_THROWS_AS(pack(p), Error);
     }
+}
+
+TEST_CASE("a photon's wavelength is stored beside its flags, and weighs its power when it is asked for") {
+    for (const WavelengthId wavelength :
+         {kAllWavelengths, WavelengthId{1}, WavelengthId{2048}, WavelengthId{kWavelengths}})
+        for (uint16_t flags = 0; flags < 4; ++flags) {
+            Photon p = test::photonAt(Vec3(0));
+            p.flags = flags;
+            p.wavelength = wavelength;
+            const PhotonPayload stored = pack(p).payload;
+            CHECK(stored.wavelength == wavelength);
+            CHECK(stored.flags == (flags | kLandedOnFront));
+            CHECK(rgbPower(stored) == unpackPower(stored.power) * wavelengthWeight(wavelength));
+            // As the map's header tells other readers.
+            uint16_t bits = 0;
+            std::memcpy(&bits, reinterpret_cast<const char*>(&stored) + 22, 2);
+            CHECK(bits == (wavelength << 4 | flags | kLandedOnFront));
+        }
+}
+
+TEST_CASE("photons that differ in their wavelength alone are in order by it") {
+    Photon a = test::photonAt(Vec3(0)), b = a;
+    b.wavelength = 7;
+    CHECK(pack(a) < pack(b));
+    CHECK(!(pack(b) < pack(a)));
 }

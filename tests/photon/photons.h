@@ -64,6 +64,7 @@ inline Photon randomPhoton(Random& random, uint64_t key) {
     p.light = static_cast<uint16_t>(random.bits() % 2);
     p.medium = static_cast<uint16_t>(random.bits() % 3);
     p.flags = static_cast<uint16_t>(random.bits() % 4);
+    p.wavelength = static_cast<WavelengthId>(random.bits() % (kWavelengths + 1));
     for (uint32_t n = random.bits() % 5; n-- > 0;) p.path.append(static_cast<Event>(random.bits() % kEventCount));
     p.key = key;
     return p;

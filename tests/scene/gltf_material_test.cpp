@@ -61,6 +61,7 @@ TEST_CASE("every property of a material is read") {
                      {{"baseColorFactor", {0.1, 0.2, 0.3, 0.875}}, {"metallicFactor", 0}, {"roughnessFactor", 0}}},
                     {"extensions",
                      {{"KHR_materials_emissive_strength", {{"emissiveStrength", 8}}},
+                      {"KHR_materials_dispersion", {{"dispersion", 0.5}}},
                       {"KHR_materials_ior", {{"ior", 1.33}}},
                       {"KHR_materials_specular", {{"specularFactor", 0.5}, {"specularColorFactor", {2, 1, 0}}}},
                       {"KHR_materials_transmission", {{"transmissionFactor", 1}}},
@@ -76,6 +77,7 @@ TEST_CASE("every property of a material is read") {
     CHECK(m.metallic == 0);
     CHECK(m.roughness == 0);
     CHECK(m.ior == 1.33F);
+    CHECK(m.dispersion == 0.5F);
     CHECK(m.specular == 0.5F);
     CHECK(m.specularColor == Rgb(2, 1, 0));
     CHECK(m.transmission == 1);
@@ -143,6 +145,8 @@ TEST_CASE("a property outside its range is refused by material, property, value 
         {withExtension("emissive_strength", {{"emissiveStrength", -2}}), "emissiveStrength -2, expected a number >= 0"},
         {withExtension("emissive_strength", {{"emissiveStrength", 1e200}}),
          "emissiveStrength 1e+200, expected a number >= 0"},
+        {withExtension("dispersion", {{"dispersion", -0.1}}),
+         "material \"water\": dispersion -0.1, expected a number >= 0"},
         {withExtension("specular", {{"specularFactor", 1.01}}), "specularFactor 1.01, expected a number in [0, 1]"},
         {withExtension("specular", {{"specularColorFactor", {1, -1, 1}}}),
          "specularColorFactor[1] -1, expected a number >= 0"},
@@ -172,6 +176,7 @@ TEST_CASE("what is rendered otherwise than the file says gets one warning, with 
     Json lamp = withExtension("clearcoat", {{"clearcoatFactor", 1}});
     lamp["emissiveFactor"] = {1, 1, 1};
     CHECK(warned(lamp, "a clearcoat does not dim the emission below it"));
+    CHECK(warned(withExtension("dispersion", {{"dispersion", 1}}), "dispersion has no effect on what is not a solid"));
     const Json gauze = {{"alphaMode", "BLEND"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 0.1}}}}};
     CHECK(warned(gauze, "material 0: alphaMode BLEND with little alpha is not glass"));
     CHECK(load(triangleFileWith({{"alphaMode", "BLEND"}})).warnings.empty());
