@@ -9,8 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from gltf_writer import Node, camera, emitter, glass, lambert, lamp, looking, metal, point_light, thin_glass, write_glb
-from shapes import box_inside, flipped, heightfield, icosphere, join, quad, revolve, square
+from gltf_writer import (Node, camera, emitter, glass, lambert, lamp, looking, metal, point_light, spot_light, sun, thin_glass, upright,
+                         write_glb)
+from shapes import box_inside, convex, flipped, heightfield, icosphere, join, quad, revolve, square
 
 GREY = lambert(0.7, 0.7, 0.7)
 GLASS = glass(1.5)
@@ -155,6 +156,99 @@ def nested():
             ball('ice', (0.08, 0.93, 0.03), 0.12, glass(1.31), level=4, priority=2), lamp(0.5, (-1.6, 2.6, -0.4), (0, 0.5, 0), 50)]
 
 
+# ---- dispersion
+
+FLINT = dict(ior=1.78472, abbe=25.68)  # SCHOTT N-SF11
+DIAMOND = dict(ior=2.4175, abbe=55.3)  # and polycarbonate: textbook figures
+POLYCARBONATE = dict(ior=1.5855, abbe=29.9)
+
+
+def rotation(axis, degrees):
+    """Matrix, right-handed about a unit axis."""
+    x, y, z = axis
+    k = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    a = math.radians(degrees)
+    return np.eye(3) + math.sin(a) * k + (1 - math.cos(a)) * k @ k
+
+
+def upright_prism(side, height, centre, turned_degrees):
+    """Equilateral, its base's outward normal turned from +Z."""
+    outward = [(math.sin(a), 0, math.cos(a)) for a in np.radians([turned_degrees, turned_degrees + 120, turned_degrees - 120])]
+    inradius = side / math.sqrt(12)
+    return convex([(n, np.dot(n, centre) + inradius) for n in outward] + [((0, 1, 0), height), ((0, -1, 0), -0.002)])
+
+
+def prism():
+    elevation, slit, x = math.radians(8), 0.05, -1.1
+    # A ray of the d line that runs level through the middle is turned by least: 66 degrees, half of it at each face.
+    turn = math.degrees(math.asin(FLINT['ior'] / 2)) - 30
+    glass_prism = upright_prism(0.6, 0.5, (0.1, 0, 0), 180 + turn)
+    baffle = join(*(quad((x, 0, z - 4), (x, 0, z), (x, 1.4, z), (x, 1.4, z - 4)) for z in (-slit / 2, 4 + slit / 2)))
+    return [camera((0.55, 2.3, 2.2), (0.3, 0, 0.35), 38, 512, 384), floor(8), Node('prism', mesh=glass_prism, material=glass(**FLINT)),
+            Node('baffle', mesh=baffle, material=lambert(0.05, 0.05, 0.05)), sun(120, (math.cos(elevation), -math.sin(elevation), 0)),
+            lamp(1, (0, 4, 0), (0, 0, 0), 1.2)]
+
+
+def prism_small():
+    turn = math.degrees(math.asin(FLINT['ior'] / 2)) - 30
+    out = np.array([math.cos(math.radians(2 * turn)), 0, math.sin(math.radians(2 * turn))])
+    aside = np.array([-out[2], 0, out[0]])
+    middle = np.array([0, 0.25, 0]) + 1.2 * out
+    corners = [middle + 0.7 * s * aside + (0, t, 0) for s, t in ((1, -0.25), (-1, -0.25), (-1, 0.4), (1, 0.4))]
+    small_prism = upright_prism(0.6, 0.5, (0, 0, -0.05), 180 + turn)
+    return [camera((0, 0.9, 0.2), tuple(middle), 45, 256, 256), floor(4), Node('prism', mesh=small_prism, material=glass(**FLINT)),
+            Node('screen', mesh=quad(*corners), material=GREY), spot_light('spot', (-2.5, 0.28, 0), (0, 0.25, 0), 300, 0.9999, 1)]
+
+
+def flint_ball():
+    return [camera((0, 2.2, 3), (0, 0.4, 0), 40, 256, 256), floor(4), ball('ball', (0, 0.7, 0), 0.6, glass(**FLINT)),
+            lamp(1.6, (0.8, 3, 0), (0, 0.5, 0), 5)]
+
+
+def brilliant(radius):
+    """Round brilliant cut: table 56% of the width, crown at 34.5 and pavilion at 40.75 degrees (Tolkowsky 1919)."""
+    girdle = 0.02  # half of its thickness, of the radius
+    table = girdle + 0.44 * math.tan(math.radians(34.5))
+
+    def ring(count, first, slope, r, y):
+        """Facets through the points at radius r and height y; slope in degrees against the horizontal, below it if y < 0."""
+        s, c = math.sin(math.radians(slope)), math.copysign(math.cos(math.radians(slope)), y)
+        angles = (first + np.arange(count) * (360 / count)) * math.pi / 180
+        return [((s * math.cos(a), c, s * math.sin(a)), radius * (s * r + c * y)) for a in angles]
+
+    return (ring(8, 0, 34.5, 1, girdle) + ring(16, 11.25, 41, 0.99, girdle) + ring(8, 22.5, 21, 0.56 * math.cos(math.pi / 8), table) +
+            ring(8, 0, 40.75, 1, -girdle) + ring(16, 11.25, 42.2, 0.99, -girdle) + ring(32, 0, 90, 0.985, girdle) +
+            [((0, 1, 0), radius * table)])
+
+
+def gem():
+    # It lies on one of its pavilion's facets, the table towards the light.
+    lying = rotation((0, 1, 0), 115) @ rotation((0, 0, 1), -40.75)
+    stone = convex([(lying @ n, d) for n, d in brilliant(0.5)])
+    above = (0, 0.002 - stone.positions[:, 1].min(), 0)
+    return [camera((-1.4, 1.7, 2.3), (-0.05, 0.12, 0.15), 32, 512, 384), floor(12), Node('gem', above, mesh=stone, material=glass(**DIAMOND)),
+            spot_light('spot', (-1, 4, 2.5), (0, 0.3, 0), 120, 8, 9), lamp(1.5, (3, 4, -2), (0, 0, 0), 1)]
+
+
+def magnifier():
+    aperture, curvature, n = 0.45, 1.3, POLYCARBONATE['ior']
+    sag = curvature - math.sqrt(curvature ** 2 - aperture ** 2)
+    height = 0.72 * curvature / (2 * (n - 1))  # of the lens over the paper: short of its focal length
+    arc = [(aperture * t, sag - (curvature - math.sqrt(curvature ** 2 - (aperture * t) ** 2))) for t in np.linspace(0, 1, 13)]
+    lens = revolve([(r, -y - 0.015) for r, y in arc] + [(r, y + 0.015) for r, y in arc[::-1]], 96)
+    rim = revolve([(aperture + 0.002, -0.03), (aperture + 0.05, -0.03), (aperture + 0.05, 0.03), (aperture + 0.002, 0.03), (aperture + 0.002, -0.03)], 96)
+    grip = revolve([(0, 0), (0.04, 0), (0.05, 0.1), (0.035, 0.6), (0, 0.6)], 32)
+    light = np.array([0.3, -1, 0.1]) / math.sqrt(1.1)
+    centre = tuple(-height * light)
+    tilt = upright(-light)
+    aside = np.cross(light, (0.3, 0, 1))
+    aside /= np.linalg.norm(aside)
+    return [camera((-0.5, 2.5, 2.3), (-0.05, 0.3, 0), 34, 512, 384), floor(12), Node('lens', centre, tilt, mesh=lens, material=glass(**POLYCARBONATE)),
+            Node('rim', centre, tilt, mesh=rim, material=metal(0.8, 0.65, 0.4, roughness=0.3)),
+            Node('grip', tuple(np.array(centre) + (aperture + 0.04) * aside), upright(aside), mesh=grip, material=lambert(0.25, 0.1, 0.05)),
+            sun(2.2, tuple(light)), lamp(2, (-2, 4, 2), (0, 0, 0), 0.7)]
+
+
 # ---- known answers
 
 
@@ -175,7 +269,7 @@ def furnace_glass():
 
 
 SCENES = [glass_sphere, glass_sphere_small, point_glass_small, pool_small, ring, cornell_small, lights, pane, pane_ball, rough_metal,
-          rough_metal_area, bent_normals, water_glass_exact, water_glass_overlap, nested, floor_lamp, furnace, furnace_glass]
+          rough_metal_area, bent_normals, water_glass_exact, water_glass_overlap, nested, prism, prism_small, flint_ball, gem, magnifier, floor_lamp, furnace, furnace_glass]
 
 
 def main(wanted):

@@ -27,12 +27,13 @@ def emitter(radiance, albedo=0):
     return material | dict(emissiveFactor=[1, 1, 1])
 
 
-def glass(ior, absorption=None, roughness=0):
-    """A solid; absorption is (colour, metres after which that colour is left)."""
+def glass(ior, absorption=None, roughness=0, abbe=None):
+    """A solid; absorption is (colour, metres after which that colour is left), abbe the number V_d of a dispersive one."""
     volume = dict(thicknessFactor=1)  # any value > 0 says solid
     if absorption:
         volume |= dict(attenuationColor=list(absorption[0]), attenuationDistance=absorption[1])
-    return _material((1, 1, 1), roughness=roughness, transmission=dict(transmissionFactor=1), ior=dict(ior=ior), volume=volume)
+    dispersion = dict(dispersion=dict(dispersion=20 / abbe)) if abbe else {}
+    return _material((1, 1, 1), roughness=roughness, transmission=dict(transmissionFactor=1), ior=dict(ior=ior), volume=volume, **dispersion)
 
 
 def thin_glass(r, g, b):
@@ -89,11 +90,25 @@ def camera(eye, target, yfov_degrees, width=512, height=512):
                 camera=dict(type='perspective', perspective=perspective, extras=dict(resolution=[width, height])))
 
 
+def upright(direction):
+    """Rotation that takes +Y to a direction."""
+    hint = (0, 0, 1) if abs(direction[2]) < 0.9 * np.linalg.norm(direction) else (1, 0, 0)
+    return _quaternion(*_frame(direction, hint))
+
+
 def lamp(size, position, toward, radiance, name='light'):
     """A square one-sided lamp that faces a point."""
-    direction = np.subtract(toward, position)
-    hint = (0, 0, 1) if abs(direction[2]) < 0.9 * np.linalg.norm(direction) else (1, 0, 0)
-    return Node(name, position, _quaternion(*_frame(direction, hint)), mesh=square(size), material=emitter(radiance))
+    return Node(name, position, upright(np.subtract(toward, position)), mesh=square(size), material=emitter(radiance))
+
+
+def sun(irradiance, direction):
+    """A directional light that shines along the direction."""
+    return Node('sun', **looking((0, 0, 0), direction), light=dict(type='directional', intensity=irradiance))
+
+
+def spot_light(name, position, toward, intensity, inner_degrees, outer_degrees):
+    cone = dict(innerConeAngle=math.radians(inner_degrees), outerConeAngle=math.radians(outer_degrees))
+    return Node(name, **looking(position, toward), light=dict(type='spot', intensity=intensity, spot=cone))
 
 
 def point_light(name, position, intensity, color=(1, 1, 1)):

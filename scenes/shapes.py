@@ -87,6 +87,38 @@ def heightfield(size, cells, height, normal):
     return Mesh(np.stack([x, height(x, z), z], axis=1), _unit(np.stack(normal(x, z), axis=1)), _cells(cells + 1, cells + 1))
 
 
+def convex(planes):
+    """The solid n . p <= d for each (n, d) of planes, flat facets; n need not be unit."""
+    planes = [(np.array(n, float) / np.linalg.norm(n), d / np.linalg.norm(n)) for n, d in planes]
+    facets = []
+    for k, (n, d) in enumerate(planes):
+        u = _unit(np.cross(n, np.eye(3)[np.argmin(abs(n))]))
+        v = np.cross(n, u)
+        far = 1e3  # wider than any solid here
+        outline = [d * n + far * (i * u + j * v) for i, j in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+        for other, (m, e) in enumerate(planes):
+            if other != k:
+                outline = _clipped(outline, m, e)
+        # Facets that meet at a corner find it each by itself: rounded, it is one.
+        corners = [p for i, p in enumerate(np.round(outline, 7)) if np.linalg.norm(p - np.round(outline, 7)[i - 1]) > 1e-6]
+        if len(corners) > 2:
+            fan = [[0, i, i + 1] for i in range(1, len(corners) - 1)]
+            facets.append(Mesh(np.array(corners), np.tile(n, (len(corners), 1)), np.array(fan)))
+    return join(*facets)
+
+
+def _clipped(outline, n, d):
+    """The part of a polygon where n . p <= d (Sutherland & Hodgman 1974)."""
+    kept = []
+    for p, q in zip(outline, outline[1:] + outline[:1]):
+        a, b = n @ p - d, n @ q - d
+        if a <= 0:
+            kept.append(p)
+        if (a <= 0) != (b <= 0):
+            kept.append(p + (q - p) * (a / (a - b)))
+    return kept
+
+
 def _ring(radius, y, normal, segments):
     """Vertices and normals of one circle; normal is (outward, up)."""
     angle = np.arange(segments) * (2 * np.pi / segments)

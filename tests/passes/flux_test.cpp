@@ -66,8 +66,8 @@ TEST_CASE("so does that of a point light") {
 }
 
 TEST_CASE("the ledger's columns sum to what was emitted, exactly, and the columns that are zero on average are zero") {
-    for (const char* scene :
-         {"glass-sphere-small", "cornell-small", "water-glass-overlap", "rough-metal-area", "bent-normals", "lights"})
+    for (const char* scene : {"glass-sphere-small", "cornell-small", "water-glass-overlap", "rough-metal-area",
+                              "bent-normals", "lights", "prism-small"})
         for (const bool all : {false, true}) {
             CAPTURE(scene);
             CAPTURE(all);

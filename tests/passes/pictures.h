@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -84,22 +85,32 @@ inline double noiseCorrectedRelMse(const RgbImage& image, const Truth& truth) {
     return sum / (3 * static_cast<double>(image.pixels.size()));
 }
 
-// The mean over blocks of pixels, and its standard error, from several seeds.
+// One picture for each seed from 1 on.
+inline std::vector<RenderResult> pictures(const Scene& scene, const PictureSettings& settings, uint64_t seeds) {
+    std::vector<RenderResult> out;
+    for (uint64_t seed = 1; seed <= seeds; ++seed) {
+        RunContext run(0, seed);
+        out.push_back(renderPicture(scene, integratorByName(settings.integrator), settings, run));
+    }
+    return out;
+}
+
+// The mean over blocks of pixels, and its standard error, from several pictures.
 struct Estimate {
     std::vector<double> mean, error;
 };
-inline Estimate estimate(const Scene& scene, const PictureSettings& settings, uint64_t seeds, int blocks,
-                         const std::string& layer = "") {
+inline Estimate estimate(const std::vector<RenderResult>& pictures, int blocks, const std::string& layer,
+                         const std::function<float(Rgb)>& valueOf = luminance) {
     const auto n = static_cast<size_t>(blocks) * static_cast<size_t>(blocks);
     std::vector<double> sum(n), sum2(n);
-    for (uint64_t seed = 1; seed <= seeds; ++seed) {
-        const RgbImage image = render(scene, settings, seed).image.layer(layer);
+    for (const RenderResult& picture : pictures) {
+        const RgbImage image = picture.image.layer(layer);
         const int side = image.width / blocks;
         for (int by = 0; by < blocks; ++by)
             for (int bx = 0; bx < blocks; ++bx) {
                 double block = 0;
                 for (int y = by * side; y < (by + 1) * side; ++y)
-                    for (int x = bx * side; x < (bx + 1) * side; ++x) block += luminance(image.at(x, y));
+                    for (int x = bx * side; x < (bx + 1) * side; ++x) block += valueOf(image.at(x, y));
                 block /= side * side;
                 const size_t at = static_cast<size_t>(by) * static_cast<size_t>(blocks) + static_cast<size_t>(bx);
                 sum[at] += block;
@@ -107,12 +118,16 @@ inline Estimate estimate(const Scene& scene, const PictureSettings& settings, ui
             }
     }
     Estimate e;
-    const auto k = static_cast<double>(seeds);
+    const auto k = static_cast<double>(pictures.size());
     for (size_t i = 0; i < n; ++i) {
         e.mean.push_back(sum[i] / k);
         e.error.push_back(std::sqrt(std::max(0.0, sum2[i] / k - e.mean[i] * e.mean[i]) / (k - 1)));
     }
     return e;
+}
+inline Estimate estimate(const Scene& scene, const PictureSettings& settings, uint64_t seeds, int blocks,
+                         const std::string& layer = "") {
+    return estimate(pictures(scene, settings, seeds), blocks, layer);
 }
 inline Estimate estimate(const std::string& scene, const PictureSettings& settings, uint64_t seeds, int blocks,
                          const std::string& layer = "") {
