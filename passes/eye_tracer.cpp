@@ -201,7 +201,7 @@ void EyeTracer::addDirect(const Vertex& v, EyePath& path, EyeScratch& scratch) c
         query.glossy &= layers_.counts(layers_.filter().accepted(light, glossy));
     }
     if (!query.diffuse && !query.glossy) return;
-    const Rgb throughput = path.state.rgb() / static_cast<float>(samples);
+    const Rgb throughput = path.state.rgbAt(v) / static_cast<float>(samples);
     const LightChoice choice = lights_.at(litPlace(v));
     for (int i = 0; i < samples; ++i) {
         const Vec2 onLight = samples == 1 ? u : inQuarter(u, i);
@@ -233,7 +233,7 @@ void EyeTracer::addPhotons(const Vertex& v, const EyePath& path, EyeScratch& scr
     query.glossyOnly = !diffuse && !glossyIsWide;
     query.glossyFromAll = glossyIsWide;
     query.glossyFromFlagged = glossyGathers;
-    query.wavelength = path.state.wavelength;
+    query.wavelength = path.state.wavelengthAt(v);
     addGathered(photons_->caustic(), query, v, path, scratch);
     if ((glossyIsWide || glossyGathers) && glossyLobePasses(v.bsdf)) {
         PhotonGatherQuery through = query;

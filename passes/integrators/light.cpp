@@ -82,7 +82,7 @@ class LightIntegrator : public Integrator {
             for (int depth = 0; depth < kLongestPath && advance(self.scene_, path, v, scratch); ++depth) {
                 const Rgb arriving = path.throughput;
                 const Vec2 lens = self.camera_.description().kind == CameraKind::ThinLens ? sampler.next2D() : Vec2(0);
-                connect(path.rgb(), state, lens);
+                connect(path.rgbAt(v), state, lens);
                 BsdfSample sample;
                 const float uLobe = sampler.next();
                 if (!sampleBsdf(v.bsdf, v.wo, uLobe, sampler.next2D(), sample)) return;

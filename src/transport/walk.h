@@ -23,6 +23,9 @@ struct PathState {
 
     // The throughput in the picture's channels.
     Rgb rgb() const { return weighed(throughput, wavelength); }
+    // The wavelength that what the vertex scatters has, and the throughput with which it does.
+    WavelengthId wavelengthAt(const Vertex& vertex) const { return vertex.disperses ? reserved : wavelength; }
+    Rgb rgbAt(const Vertex& vertex) const { return weighed(throughput, wavelengthAt(vertex)); }
 };
 
 // For a path that starts with the sampler.

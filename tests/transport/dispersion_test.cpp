@@ -171,3 +171,19 @@ TEST_CASE("a wavelength is drawn only where something disperses") {
         CHECK(!builder.build()->disperses());
     }
 }
+
+TEST_CASE("what a rough surface that disperses sends to a lamp or takes from a photon has the path's wavelength") {
+    SceneBuilder builder;
+    Material rough = flint();
+    rough.roughness = 0.3F;
+    builder.add(test::box({-1, 3, -1}, {1, 4, 1}), rough);
+    const auto scene = builder.build();
+    const WavelengthId reserved = wavelengthAt(610);
+    PathState path = startAt(*scene, {0.1F, 2, 0.1F}, {0, 1, 0}, reserved);
+    WalkScratch scratch;
+    Vertex v;
+    REQUIRE(advance(*scene, path, v, scratch));
+    CHECK(path.rgb() == Rgb(1));
+    CHECK(path.wavelengthAt(v) == reserved);
+    CHECK(path.rgbAt(v) == wavelengthWeight(reserved));
+}
