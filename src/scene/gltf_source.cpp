@@ -18,7 +18,7 @@ constexpr size_t kHeaderBytes = 12, kChunkHeaderBytes = 8;
 constexpr uint32_t kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;  // "JSON", "BIN\0"
 
 // All supported machines are little-endian, as GLB is.
-uint32_t word(const std::string& bytes, size_t offset) {
+uint32_t word(std::string_view bytes, size_t offset) {
     uint32_t value = 0;
     std::memcpy(&value, bytes.data() + offset, sizeof value);
     return value;
@@ -29,7 +29,7 @@ struct Chunk {
     uint32_t type = 0;
 };
 
-Chunk chunkAt(const std::string& name, const std::string& bytes, size_t offset, size_t end, int number) {
+Chunk chunkAt(const std::string& name, std::string_view bytes, size_t offset, size_t end, int number) {
     if (end - offset < kChunkHeaderBytes)
         throw Error(fmt::format("{}: GLB chunk {}: truncated, {} bytes left, expected a header of {}", name, number,
                                 end - offset, kChunkHeaderBytes));
@@ -43,7 +43,7 @@ Chunk chunkAt(const std::string& name, const std::string& bytes, size_t offset, 
 }
 
 // Where the file's length and the header's differ: the header's holds. Returns it.
-size_t checkedLength(const std::string& name, const std::string& bytes, Warnings& warnings) {
+size_t checkedLength(const std::string& name, std::string_view bytes, Warnings& warnings) {
     if (bytes.size() < kHeaderBytes)
         throw Error(
             fmt::format("{}: truncated GLB: {} bytes, expected a header of {}", name, bytes.size(), kHeaderBytes));
@@ -58,7 +58,7 @@ size_t checkedLength(const std::string& name, const std::string& bytes, Warnings
     return length;
 }
 
-GltfSource splitGlb(const std::string& name, std::string bytes, Warnings& warnings) {
+GltfSource splitGlb(const std::string& name, std::string&& bytes, Warnings& warnings) {
     GltfSource source;
     source.isGlb = true;
     const size_t end = checkedLength(name, bytes, warnings);
