@@ -8,14 +8,6 @@ namespace {
 
 constexpr uint64_t kPathsPerChunk = 512;
 
-std::vector<LightPaths> tracePilot(LightTracerInput& input, uint64_t paths, ThreadPool& pool) {
-    input.stage = Stage::EmissionPilot;
-    std::vector<LightPaths> results(paths / kPathsPerChunk);
-    pool.forEach(results.size(),
-                 [&](size_t i) { results[i] = traceLightPaths(input, i * kPathsPerChunk, (i + 1) * kPathsPerChunk); });
-    return results;
-}
-
 float powerOf(const PhotonPayload& p) {
     const Rgb power = unpackPower(p.power);
     return power.x + power.y + power.z;
@@ -47,6 +39,14 @@ class PilotIrradiance {
 };
 
 }  // namespace
+
+std::vector<LightPaths> tracePilot(LightTracerInput input, uint64_t paths, ThreadPool& pool) {
+    input.stage = Stage::EmissionPilot;
+    std::vector<LightPaths> results(paths / kPathsPerChunk);
+    pool.forEach(results.size(),
+                 [&](size_t i) { results[i] = traceLightPaths(input, i * kPathsPerChunk, (i + 1) * kPathsPerChunk); });
+    return results;
+}
 
 std::vector<AimTrial> tryAims(LightTracerInput input, ThreadPool& pool) {
     constexpr uint64_t kPaths = 65536;

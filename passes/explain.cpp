@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "passes/emit.h"
+#include "passes/emission_pilot.h"
 #include "path/event.h"
 
 namespace lsde {
@@ -81,7 +81,7 @@ Reach reachOf(const Scene& scene, const std::vector<bool>& lights) {
         LightPathStart start;
         const bool emits = sources.sample(sampler, start);
         reach.aims |= start.part > 0;
-        PathState path{start.ray, start.media, start.power};
+        PathState path = start.path();
         Vertex v;
         reach.arrives = emits && advance(scene, path, v, scratch) && hasNarrowLobe(scene.material(v.surface));
     }
@@ -192,19 +192,15 @@ Explanation explain(const Scene& scene, const std::vector<bool>& lights, const L
 }
 
 Explanation explainByPilot(const Scene& scene, RunContext& run) {
-    constexpr uint64_t kPaths = 16384, kPathsPerChunk = 1024;
+    constexpr uint64_t kPaths = 16384;
     std::vector<bool> lights;
     for (const Light& light : scene.lights()) lights.push_back(!isBlack(light.power()));
     Ledger ledger(scene.lights().size(), scene.objects().size());
     if (std::find(lights.begin(), lights.end(), true) == lights.end()) return explain(scene, lights, ledger, 0);
     const EmissionSampler sources(scene, lights, kAimedAtCasters);
     const DiffuseAim unaimed(scene, 0);
-    const LightTracerInput input{scene, sources, unaimed, Store::Caustic, 64, run.seed, 0, Stage::EmissionPilot};
-    std::vector<LightPaths> results(kPaths / kPathsPerChunk);
-    run.pool.forEach(results.size(), [&](size_t i) {
-        results[i] = traceLightPaths(input, i * kPathsPerChunk, (i + 1) * kPathsPerChunk);
-    });
-    for (const LightPaths& paths : results) ledger.merge(paths.ledger);
+    const LightTracerInput input{scene, sources, unaimed, Store::Caustic, 64, run.seed};
+    for (const LightPaths& paths : tracePilot(input, kPaths, run.pool)) ledger.merge(paths.ledger);
     return explain(scene, lights, ledger, kPaths);
 }
 

@@ -1,5 +1,6 @@
 #include "bsdf/thin_film.h"
 
+#include "base/color.h"
 #include "bsdf/fresnel.h"
 
 namespace lsde {
@@ -20,8 +21,7 @@ Rgb sensitivity(float opd, Rgb shift) {
     const float x = lobe(5.4856e-13F, 1.6810e6F, 4.3278e9F, shift.x) + lobe(9.7470e-14F, 2.2399e6F, 4.5282e9F, shift.x);
     const float y = lobe(4.4201e-13F, 1.7953e6F, 9.3046e9F, shift.y);
     const float z = lobe(5.2481e-13F, 2.2084e6F, 6.6121e9F, shift.z);
-    return {3.2404542F * x - 1.5371385F * y - 0.4985314F * z, -0.9692660F * x + 1.8760108F * y + 0.0415560F * z,
-            0.0556434F * x - 0.2040259F * y + 1.0572252F * z};
+    return rec709FromXyz(Vec3(x, y, z));
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdlib>
 
+#include "base/color.h"
+
 namespace lsde {
 
 namespace {
@@ -21,11 +23,10 @@ constexpr int kBins = static_cast<int>(kRows - 1) * kStepNm;  // of 1 nm, each o
 
 using Channels = std::array<double, 3>;
 
-// Of a channel of linear Rec. 709 to D65's light, up to a factor (matrix: ITU-R BT.709 primaries and white).
+// Of a channel of linear Rec. 709 to D65's light, up to a factor.
 Channels sensitivityOf(const ObserverRow& r) {
-    return {r.d65 * (3.2404542 * r.x - 1.5371385 * r.y - 0.4985314 * r.z),
-            r.d65 * (-0.9692660 * r.x + 1.8760108 * r.y + 0.0415560 * r.z),
-            r.d65 * (0.0556434 * r.x - 0.2040259 * r.y + 1.0572252 * r.z)};
+    const glm::dvec3 s = r.d65 * rec709FromXyz(glm::dvec3(r.x, r.y, r.z));
+    return {s.x, s.y, s.z};
 }
 
 std::array<Channels, kRows> sensitivities() {

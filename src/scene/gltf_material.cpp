@@ -159,12 +159,9 @@ void readLayers(const JsonObject& root, const JsonObject& object, Material& m, W
     m.sheen = readSheen(root, object);
     m.clearcoat = readClearcoat(root, object);
     if (m.clearcoat && m.emissive()) warnings.add("a clearcoat does not dim the emission below it", object.where());
-    if (!(m.transmission > 0) || !(m.anisotropy || m.iridescence || m.sheen || m.clearcoat)) return;
+    if (!(m.transmission > 0) || !m.hasLayers()) return;
     warnings.add("anisotropy, iridescence, sheen and clearcoat are not rendered on glass", object.where());
-    m.anisotropy.reset();
-    m.iridescence.reset();
-    m.sheen.reset();
-    m.clearcoat.reset();
+    m.removeLayers();
 }
 
 void readEmission(const JsonObject& root, const JsonObject& object, Material& m) {
@@ -185,10 +182,7 @@ void readUnlit(const JsonObject& object, Material& m, Warnings& warnings) {
     m.metallicRoughnessTexture = m.specularTexture = m.transmissionTexture = m.normalTexture = {};
     m.emission = Rgb(0);
     m.volume.reset();
-    m.anisotropy.reset();
-    m.iridescence.reset();
-    m.sheen.reset();
-    m.clearcoat.reset();
+    m.removeLayers();
 }
 
 void readAlpha(const JsonObject& object, Material& m, Warnings& warnings) {

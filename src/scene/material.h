@@ -97,6 +97,14 @@ struct Material {
             out.insert(out.end(), {&clearcoat->texture, &clearcoat->roughnessTexture, &clearcoat->normalTexture});
         return out;
     }
+    // What is beyond metallic-roughness on opaque materials.
+    bool hasLayers() const { return anisotropy || iridescence || sheen || clearcoat; }
+    void removeLayers() {
+        anisotropy.reset();
+        iridescence.reset();
+        sheen.reset();
+        clearcoat.reset();
+    }
     bool usesTangents() const { return normalTexture || anisotropy || (clearcoat && clearcoat->normalTexture); }
     bool emissive() const { return maxComponent(emission) > 0; }
     bool isSolid() const { return transmission > 0 && volume.has_value(); }

@@ -148,8 +148,7 @@ Surface Scene::surface(const Hit& hit) const {
 Vec3 Scene::vertexNormal(const Surface& s) const {
     const Mesh& mesh = description_.meshes[s.mesh];
     if (mesh.normals.empty()) return s.ng;
-    const Triangle& t = mesh.triangles[s.triangle];
-    const Vec3 n = (1 - s.u - s.v) * mesh.normals[t[0]] + s.u * mesh.normals[t[1]] + s.v * mesh.normals[t[2]];
+    const Vec3 n = interpolated(mesh.normals, mesh.triangles[s.triangle], s.u, s.v);
     const float length = glm::length(n);
     // Normals that cancel out, or that point behind the face, say nothing of this side: the face's own holds.
     return length > 0 && glm::dot(n, s.ng) > 0 ? n / length : s.ng;
@@ -193,9 +192,8 @@ Bsdf Scene::bsdf(const Surface& s, float iorFront, float iorBack) const {
     MetalRoughBsdf b;
     b.baseColor = baseColor;
     metallicRoughness(s, b.metallic, b.roughness);
-    b.specular = m.specular;
-    if (m.specularTexture) b.specular *= sample(s, m.specularTexture, false).w;
-    const bool bare = !m.anisotropy && !m.iridescence && !m.sheen && !m.clearcoat;
+    b.specular = specular(s);
+    const bool bare = !m.hasLayers();
     if (bare && b.metallic == 0 && b.specular == 0) {
         if (isBlack(baseColor)) return BlackBsdf{};
         return DiffuseBsdf{baseColor};
@@ -221,8 +219,7 @@ Bsdf Scene::transmissiveBsdf(const Surface& s, Rgb baseColor, float eta) const {
     if (!b.thin && std::fabs(eta - 1) < kNoInterface) b.roughness = 0;
     b.transmission = m.transmission;
     if (m.transmissionTexture) b.transmission *= sample(s, m.transmissionTexture, false).x;
-    b.specular = m.specular;
-    if (m.specularTexture) b.specular *= sample(s, m.specularTexture, false).w;
+    b.specular = specular(s);
     b.specularColor = specularColor(s);
     const bool clear = b.transmission == 1 && b.metallic == 0 && b.specular == 1 && b.specularColor == Rgb(1);
     if (!clear || b.roughness > 0) return b;
@@ -238,6 +235,11 @@ void Scene::metallicRoughness(const Surface& s, float& metallic, float& roughnes
     const Vec4 texel = sample(s, m.metallicRoughnessTexture, false);
     roughness *= texel.y;
     metallic *= texel.z;
+}
+
+float Scene::specular(const Surface& s) const {
+    const Material& m = material(s);
+    return m.specularTexture ? m.specular * sample(s, m.specularTexture, false).w : m.specular;
 }
 
 Rgb Scene::specularColor(const Surface& s) const {

@@ -96,6 +96,7 @@ class Scene {
     Rgb vertexColor(const Surface& s) const;
     Vec4 sample(const Surface& s, const TextureRef& ref, bool srgb) const;
     void metallicRoughness(const Surface& s, float& metallic, float& roughness) const;
+    float specular(const Surface& s) const;
     Rgb specularColor(const Surface& s) const;
     Vec3 vertexNormal(const Surface& s) const;  // the shading normal before any texture bends it
     Vec3 mappedNormal(const Surface& s, Vec3 normal, const TextureRef& ref, float scale) const;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/color.h"
 #include "base/error.h"
 
 namespace lsde {
@@ -18,13 +19,8 @@ constexpr float kSunRadius = 0.265F * kPi / 180;
 // The sky is smooth: interpolation between texels of a third of a degree is within 1e-3 of it, but for the horizon.
 constexpr int kRows = 512;
 
-// Linear Rec. 709 (ITU-R BT.709 primaries, D65), of the same luminance; beyond its border the least channel is 0.
-Rgb fromXyz(glm::dvec3 xyz) {
-    const glm::dvec3 rgb(3.2404542 * xyz.x - 1.5371385 * xyz.y - 0.4985314 * xyz.z,
-                         -0.9692660 * xyz.x + 1.8760108 * xyz.y + 0.0415560 * xyz.z,
-                         0.0556434 * xyz.x - 0.2040259 * xyz.y + 1.0572252 * xyz.z);
-    return Rgb(glm::max(rgb, 0.0));
-}
+// Linear Rec. 709; beyond its border the least channel is 0.
+Rgb fromXyz(glm::dvec3 xyz) { return Rgb(glm::max(rec709FromXyz(xyz), 0.0)); }
 
 // ------------------------------------------------------------------------------------------------------------ the sky
 
