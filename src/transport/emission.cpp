@@ -175,9 +175,8 @@ float EmissionSampler::aimedConePdf(const Aim& aim, Vec3 position, Vec3 directio
     return pdf;
 }
 
-float EmissionSampler::aimedDiscPdf(const Aim& aim, Vec3 direction, Vec3 position, const PrimaryPoint& u,
+float EmissionSampler::aimedDiscPdf(const Aim& aim, const Frame& frame, Vec3 position, const PrimaryPoint& u,
                                     Draw drawn) const {
-    const Frame frame(direction);
     float pdf = 0;
     for (size_t i = 1; i < aim.parts.size(); ++i) {
         const Sphere& s = targets_[i - 1];
@@ -230,17 +229,16 @@ bool EmissionSampler::samplePoint(const PointLight& light, const Aim& aim, Sampl
     return true;
 }
 
-float EmissionSampler::startOnDisc(const Sphere& scene, Vec3 direction, const Aim& aim, Draw drawn,
+float EmissionSampler::startOnDisc(const Sphere& scene, const Frame& frame, const Aim& aim, Draw drawn,
                                    LightPathStart& start) const {
     const size_t first = aim.firstShared ? 2 : 0;
     const Vec2 u = squareToDisk({start.u[first], start.u[first + 1]});
-    const Frame frame(direction);
     const Sphere& disc = start.part > 0 ? targets_[start.part - 1] : scene;
     const Vec3 inPlane = disc.centre + disc.radius * (u.x * frame.x + u.y * frame.y);
     // Back to a plane before the whole scene.
-    const float back = glm::dot(inPlane - scene.centre, direction) + 1.01F * scene.radius;
-    start.ray = {inPlane - back * direction, direction, kInfinity};
-    const Densities d = discDensities(scene, direction, inPlane, aim, start.u, drawn);
+    const float back = glm::dot(inPlane - scene.centre, frame.z) + 1.01F * scene.radius;
+    start.ray = {inPlane - back * frame.z, frame.z, kInfinity};
+    const Densities d = discDensities(scene, frame, inPlane, aim, start.u, drawn);
     start.aimWeight = d.whole / d.mixture;
     return d.whole > 0 ? d.mixture : kInfinity;
 }
@@ -249,7 +247,7 @@ void EmissionSampler::sampleDirectional(const DirectionalLight& light, const Aim
                                         LightPathStart& start) const {
     start.u = primaryPoint(sampler.next2D(), Vec2(0));
     const Draw drawn = draw(aim, start.part, start.u);
-    start.power = light.irradiance / startOnDisc(light.scene, light.direction, aim, drawn, start);
+    start.power = light.irradiance / startOnDisc(light.scene, Frame(light.direction), aim, drawn, start);
 }
 
 void EmissionSampler::sampleInfinite(const InfiniteLight& light, const Aim& aim, Sampler& sampler,
@@ -259,7 +257,7 @@ void EmissionSampler::sampleInfinite(const InfiniteLight& light, const Aim& aim,
     const Draw drawn = draw(aim, start.part, start.u);
     float pdfW = 0;
     const Vec3 towards = light.sample({start.u[0], start.u[1]}, pdfW);
-    start.power = light.radiance(towards) / (pdfW * startOnDisc(light.scene, -towards, aim, drawn, start));
+    start.power = light.radiance(towards) / (pdfW * startOnDisc(light.scene, Frame(-towards), aim, drawn, start));
 }
 
 bool EmissionSampler::sample(Sampler& sampler, LightPathStart& start) const {
@@ -301,12 +299,12 @@ EmissionSampler::Densities EmissionSampler::directionDensities(size_t index, Vec
     return d;
 }
 
-EmissionSampler::Densities EmissionSampler::discDensities(const Sphere& scene, Vec3 direction, Vec3 position,
+EmissionSampler::Densities EmissionSampler::discDensities(const Sphere& scene, const Frame& frame, Vec3 position,
                                                           const Aim& aim, const PrimaryPoint& u, Draw drawn) const {
-    const Vec2 offset = discOffset(scene, position, Frame(direction));
+    const Vec2 offset = discOffset(scene, position, frame);
     Densities d;
     d.whole = glm::dot(offset, offset) <= square(scene.radius) ? 1 / (kPi * square(scene.radius)) : 0;
-    d.mixture = aim.parts.pmf(0) * d.whole + aimedDiscPdf(aim, direction, position, u, drawn);
+    d.mixture = aim.parts.pmf(0) * d.whole + aimedDiscPdf(aim, frame, position, u, drawn);
     return d;
 }
 
@@ -315,8 +313,8 @@ EmissionSampler::Densities EmissionSampler::discDensities(size_t light, Vec3 pos
     const auto& shape = scene_.lights()[light].shape;
     const auto* directional = std::get_if<DirectionalLight>(&shape);
     const Sphere& scene = directional != nullptr ? directional->scene : std::get<InfiniteLight>(shape).scene;
-    return discDensities(scene, directional != nullptr ? directional->direction : direction, position, aims_[light],
-                         primaryPoint(uDirection, Vec2(0)), {0, 1});
+    const Frame frame(directional != nullptr ? directional->direction : direction);
+    return discDensities(scene, frame, position, aims_[light], primaryPoint(uDirection, Vec2(0)), {0, 1});
 }
 
 }  // namespace lsde

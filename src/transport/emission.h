@@ -100,16 +100,17 @@ class EmissionSampler {
     void sampleDirectional(const DirectionalLight& light, const Aim& aim, Sampler& sampler,
                            LightPathStart& start) const;
     void sampleInfinite(const InfiniteLight& light, const Aim& aim, Sampler& sampler, LightPathStart& start) const;
-    // On a disc before the whole scene, facing the direction; returns the mixture's density there (1/m2).
-    float startOnDisc(const Sphere& scene, Vec3 direction, const Aim& aim, Draw drawn, LightPathStart& start) const;
-    Densities discDensities(const Sphere& scene, Vec3 direction, Vec3 position, const Aim& aim, const PrimaryPoint& u,
-                            Draw drawn) const;
+    // On a disc before the whole scene, facing the direction, which is the frame's z; returns the mixture's density
+    // there (1/m2).
+    float startOnDisc(const Sphere& scene, const Frame& frame, const Aim& aim, Draw drawn, LightPathStart& start) const;
+    Densities discDensities(const Sphere& scene, const Frame& frame, Vec3 position, const Aim& aim,
+                            const PrimaryPoint& u, Draw drawn) const;
     // Sum over the aimed parts of choice probability times density. The part that drew the direction counts even if
     // rounding put it just beyond the cone's edge: it would weigh as what is hardly ever drawn. `all`: the whole
     // emission, which is what a part inside its target aims at.
     float aimedConePdf(const Aim& aim, Vec3 position, Vec3 direction, const DirectionMap& all, const PrimaryPoint& u,
                        Draw drawn) const;
-    float aimedDiscPdf(const Aim& aim, Vec3 direction, Vec3 position, const PrimaryPoint& u, Draw drawn) const;
+    float aimedDiscPdf(const Aim& aim, const Frame& frame, Vec3 position, const PrimaryPoint& u, Draw drawn) const;
 
     const Scene& scene_;
     DiscreteDistribution choice_;
