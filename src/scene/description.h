@@ -2,28 +2,32 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "image/image.h"
+#include "scene/ies_profile.h"
 #include "scene/material.h"
 #include "scene/mesh.h"
 #include "scene/texture.h"
 
 namespace lsde {
 
-enum class PunctualKind : uint8_t { Point, Spot, Directional };
+enum class PunctualKind : uint8_t { Point, Spot, Directional, Measured };
 
-// KHR_lights_punctual in world space; the node's scale changes neither direction nor power.
+// KHR_lights_punctual and EXT_lights_ies in world space; the node's scale changes neither direction nor power.
 struct PunctualLight {
     std::string name;  // the node's name, else the light's, else "light N"
     PunctualKind kind = PunctualKind::Point;
-    Rgb intensity{1};  // color x intensity: W/sr (point, spot), W/m2 (directional)
+    Rgb intensity{1};  // color x intensity: W/sr (point, spot; measured: at most), W/m2 (directional)
     Vec3 position{0};
     Vec3 direction{0, 0, -1};  // the way the light shines (-Z of the node)
     float innerConeAngle = 0;  // rad
     float outerConeAngle = kPi / 4;
+    std::shared_ptr<const IesProfile> profile;  // measured: in a frame of +X and +Y of the node, and of -direction
+    Vec3 right{1, 0, 0}, up{0, 1, 0};
 };
 
 // Light from all directions; how the picture lies around the scene: scene/environment_map.h.

@@ -136,6 +136,11 @@ void add(Hasher& h, const PunctualLight& l) {
     h.value(l.direction);
     h.value(l.innerConeAngle);
     h.value(l.outerConeAngle);
+    if (l.kind != PunctualKind::Measured) return;
+    h.value(l.right);
+    h.value(l.up);
+    h.value(l.profile->photometry());
+    for (const std::vector<float>* table : l.profile->tables()) h.array(*table);
 }
 
 void add(Hasher& h, const EnvironmentDescription& e) {

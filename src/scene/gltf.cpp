@@ -9,6 +9,7 @@
 #include "scene/gltf_attachments.h"
 #include "scene/gltf_compression.h"
 #include "scene/gltf_geometry.h"
+#include "scene/gltf_ies.h"
 #include "scene/gltf_material.h"
 #include "scene/gltf_model.h"
 #include "scene/gltf_nodes.h"
@@ -49,6 +50,8 @@ SceneDescription load(const std::filesystem::path& file, const GltfOptions& opti
     const std::vector<PlacedNode> placed = placeNodes(root, index, warnings);
     scene.cameras = placeCameras(attachments, root, placed);
     scene.lights = placeLights(attachments, root, placed);
+    for (PunctualLight& light : placeMeasuredLights(resources, model, placed, warnings))
+        scene.lights.push_back(std::move(light));
     GeometryLoader geometry(name, model, warnings);
     placeMeshes(root, placed, materials, geometry, scene, warnings);
     if (scene.meshes.empty()) root.fail(fmt::format("scene {}: no triangles to render", index));

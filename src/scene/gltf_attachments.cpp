@@ -174,6 +174,20 @@ std::vector<CameraDescription> placeCameras(const GltfAttachments& attachments, 
     return out;
 }
 
+void placeLight(const JsonObject& node, const glm::dmat4& frame, PunctualLight& light) {
+    light.position = position(node, frame);
+    if (light.kind == PunctualKind::Point) return;
+    light.direction = -direction(node, frame, 2);
+    if (light.kind != PunctualKind::Measured) return;
+    // Right angles where shear left none; mirrored where the node is.
+    const Vec3 right = direction(node, frame, 0), up = direction(node, frame, 1);
+    const Vec3 across = right - glm::dot(right, light.direction) * light.direction;
+    if (!(lengthSquared(across) > 1e-12F)) node.fail("its matrix is singular: a light has no direction");
+    light.right = glm::normalize(across);
+    light.up = glm::cross(light.right, light.direction);
+    if (glm::dot(light.up, up) < 0) light.up = -light.up;
+}
+
 std::vector<PunctualLight> placeLights(const GltfAttachments& attachments, const JsonObject& root,
                                        const std::vector<PlacedNode>& placed) {
     const std::vector<JsonObject> nodes = root.objects("nodes", "node");
@@ -185,8 +199,7 @@ std::vector<PunctualLight> placeLights(const GltfAttachments& attachments, const
         if (!index || !attachments.lights[*index]) continue;
         PunctualLight light = *attachments.lights[*index];
         light.name = objectName(node, light.name, "light", *index);
-        light.position = position(node, p.unscaled);
-        if (light.kind != PunctualKind::Point) light.direction = -direction(node, p.unscaled, 2);
+        placeLight(node, p.unscaled, light);
         out.push_back(std::move(light));
     }
     return out;

@@ -23,6 +23,8 @@ GltfAttachments readAttachments(const JsonObject& root, Warnings& warnings);
 // Those of the placed nodes, in their order. Throws Error for a node whose matrix leaves no direction.
 std::vector<CameraDescription> placeCameras(const GltfAttachments& attachments, const JsonObject& root,
                                             const std::vector<PlacedNode>& placed);
+// Sets the light's position and directions. Throws Error likewise.
+void placeLight(const JsonObject& node, const glm::dmat4& frame, PunctualLight& light);
 std::vector<PunctualLight> placeLights(const GltfAttachments& attachments, const JsonObject& root,
                                        const std::vector<PlacedNode>& placed);
 

@@ -15,12 +15,26 @@ namespace lsde {
 namespace {
 
 // Extensions that are rendered as they say.
-constexpr auto kSupported = std::to_array<std::string_view>(
-    {"EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "EXT_texture_webp", "KHR_draco_mesh_compression",
-     "KHR_lights_punctual", "KHR_materials_anisotropy", "KHR_materials_clearcoat", "KHR_materials_dispersion",
-     "KHR_materials_emissive_strength", "KHR_materials_ior", "KHR_materials_iridescence", "KHR_materials_sheen",
-     "KHR_materials_specular", "KHR_materials_transmission", "KHR_materials_unlit", "KHR_materials_variants",
-     "KHR_materials_volume", "KHR_mesh_quantization", "KHR_texture_transform"});
+constexpr auto kSupported = std::to_array<std::string_view>({"EXT_lights_ies",
+                                                             "EXT_mesh_gpu_instancing",
+                                                             "EXT_meshopt_compression",
+                                                             "EXT_texture_webp",
+                                                             "KHR_draco_mesh_compression",
+                                                             "KHR_lights_punctual",
+                                                             "KHR_materials_anisotropy",
+                                                             "KHR_materials_clearcoat",
+                                                             "KHR_materials_dispersion",
+                                                             "KHR_materials_emissive_strength",
+                                                             "KHR_materials_ior",
+                                                             "KHR_materials_iridescence",
+                                                             "KHR_materials_sheen",
+                                                             "KHR_materials_specular",
+                                                             "KHR_materials_transmission",
+                                                             "KHR_materials_unlit",
+                                                             "KHR_materials_variants",
+                                                             "KHR_materials_volume",
+                                                             "KHR_mesh_quantization",
+                                                             "KHR_texture_transform"});
 
 // Depth and number of values, found before the parser allocates anything for them.
 void checkJsonLimits(const std::string& name, const std::string& text) {

@@ -13,8 +13,8 @@ namespace {
 
 constexpr size_t kNone = std::numeric_limits<size_t>::max();
 
-size_t lightCount(const GltfChecks& checks) {
-    const auto lights = checks.root.extension("KHR_lights_punctual");
+size_t lightCount(const GltfChecks& checks, const char* extension) {
+    const auto lights = checks.root.extension(extension);
     return lights ? lights->size("lights") : 0;
 }
 
@@ -65,10 +65,11 @@ void checkNode(const GltfChecks& checks, const JsonObject& node) {
     if (node.reference("skin", "skin", checks.root.size("skins")))
         checks.warnings.add("skinning is not rendered: the mesh is shown at rest", node.where());
     checkInstances(checks, node);
-    if (const auto light = node.extension("KHR_lights_punctual")) {
-        light->require("light");
-        light->reference("light", "light", lightCount(checks));
-    }
+    for (const char* extension : {"KHR_lights_punctual", "EXT_lights_ies"})
+        if (const auto light = node.extension(extension)) {
+            light->require("light");
+            light->reference("light", "light", lightCount(checks, extension));
+        }
 }
 
 // Each node's parent, kNone for roots.

@@ -139,6 +139,8 @@ EmissionPoint AreaLight::samplePoint(Vec2 u, float uSide) const {
 }
 
 float PointLight::falloff(Vec3 direction) const {
+    if (profile != nullptr)
+        return profile->relative({glm::dot(direction, right), glm::dot(direction, up), -glm::dot(direction, axis)});
     if (!isSpot()) return 1;
     const float oneMinusCos = 0.5F * lengthSquared(direction - axis);
     if (oneMinusCos <= oneMinusCosInner) return 1;
@@ -146,6 +148,7 @@ float PointLight::falloff(Vec3 direction) const {
 }
 
 Rgb PointLight::power() const {
+    if (profile != nullptr) return intensity * profile->solidAngle();
     if (!isSpot()) return intensity * (4 * kPi);
     // 2 pi times the integral of the falloff over the cosine: 1 within the inner cone, the square of a ramp beyond.
     return intensity * (2 * kPi * (oneMinusCosInner + (oneMinusCosOuter - oneMinusCosInner) / 3));

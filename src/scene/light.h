@@ -4,6 +4,7 @@
 // (emission). Powers are of the whole light, in W per channel.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
@@ -64,6 +65,9 @@ struct PointLight {
     // ones exact; 2 for a point light.
     Vec3 axis{0, 0, -1};
     float oneMinusCosInner = 2, oneMinusCosOuter = 2;
+    // Measured: the falloff, in the frame of right, up and -axis, unit.
+    std::shared_ptr<const IesProfile> profile;
+    Vec3 right{1, 0, 0}, up{0, 1, 0};
 
     bool isSpot() const { return oneMinusCosOuter < 2; }
     float falloff(Vec3 direction) const;  // of light leaving in this direction, in [0,1]

@@ -90,6 +90,12 @@ void Scene::buildLights() {
             continue;
         }
         PointLight light{p.position, p.intensity};
+        if (p.kind == PunctualKind::Measured) {
+            light.axis = p.direction;
+            light.profile = p.profile;
+            light.right = p.right;
+            light.up = p.up;
+        }
         if (p.kind == PunctualKind::Spot) {
             light.axis = p.direction;
             light.oneMinusCosInner = 2 * square(std::sin(0.5F * p.innerConeAngle));

@@ -161,6 +161,18 @@ class SceneBuilder {
         l.intensity = intensity;
         description_.lights.push_back(l);
     }
+    // Down, half of that sideways, nothing up; three times as much towards +X as towards -X.
+    void measured(Vec3 position, Rgb intensity) {
+        point(position, intensity);
+        PunctualLight& l = description_.lights.back();
+        l.name = "measured";
+        l.kind = PunctualKind::Measured;
+        l.direction = {0, -1, 0};
+        l.right = {1, 0, 0};
+        l.up = {0, 0, -1};
+        l.profile = std::make_shared<const IesProfile>(
+            "TILT=NONE\n1 1 1 3 3 1 2 0 0 0 1 1 1\n0 90 150\n0 90 180\n1 .75 0 1 .5 0 1 .25 0\n");
+    }
     void spot(Vec3 position, Vec3 towards, Rgb intensity, float innerDeg, float outerDeg) {
         point(position, intensity);
         PunctualLight& l = description_.lights.back();

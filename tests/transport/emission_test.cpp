@@ -36,8 +36,8 @@ Mesh speck() {
                              corner(0, 0.9F), corner(-0.2F, 0.5F)});
 }
 
-enum class Kind { Point, Spot, NarrowSpot, AreaDown, AreaBothSides, Sun, SunDisc, Environment };
-constexpr std::array kKinds = {Kind::Point,         Kind::Spot, Kind::NarrowSpot, Kind::AreaDown,
+enum class Kind { Point, Spot, NarrowSpot, Measured, AreaDown, AreaBothSides, Sun, SunDisc, Environment };
+constexpr std::array kKinds = {Kind::Point,         Kind::Spot, Kind::NarrowSpot, Kind::Measured,   Kind::AreaDown,
                                Kind::AreaBothSides, Kind::Sun,  Kind::SunDisc,    Kind::Environment};
 const Vec3 kFromSun(0.3F, -1, 0.2F);
 
@@ -50,6 +50,8 @@ void addLight(SceneBuilder& scene, Kind kind, const Mesh& lamp = speck()) {
             return scene.spot(kLight, {0.3F, 0, 0}, strength, 20, 60);
         case Kind::NarrowSpot:
             return scene.spot(kLight, {0.1F, 0, 0}, strength, 0.3F, 0.5F);
+        case Kind::Measured:
+            return scene.measured(kLight, strength);
         case Kind::AreaDown:
             scene.add(lamp, test::emitter(strength));
             return;
@@ -364,8 +366,8 @@ TEST_CASE("the total power is that of Lambert, of all directions, of the spot's 
 
 TEST_CASE("aiming, learnt or not, changes no flux: on a caster, beside it, and by direction") {
     const Mesh lamp = test::plate(kLight, 0.4F, false);
-    for (const Kind kind :
-         {Kind::Point, Kind::Spot, Kind::AreaDown, Kind::AreaBothSides, Kind::Sun, Kind::SunDisc, Kind::Environment}) {
+    for (const Kind kind : {Kind::Point, Kind::Spot, Kind::Measured, Kind::AreaDown, Kind::AreaBothSides, Kind::Sun,
+                            Kind::SunDisc, Kind::Environment}) {
         CAPTURE(static_cast<int>(kind));
         SceneBuilder builder;
         addCasters(builder);
