@@ -5,35 +5,27 @@
 #include <cstdlib>
 
 #include "base/color.h"
+#include "sampling/cie.h"
 
 namespace lsde {
 
 namespace {
 
-struct ObserverRow {
-    int nm;
-    double x, y, z, d65;
-};
-constexpr ObserverRow kObserver[] = {
-#include "data/cie_1931_d65.inc"
-};
-constexpr size_t kRows = std::size(kObserver);
-constexpr int kFirstNm = kObserver[0].nm, kStepNm = kObserver[1].nm - kFirstNm;
-constexpr int kBins = static_cast<int>(kRows - 1) * kStepNm;  // of 1 nm, each of even density
+constexpr int kBins = static_cast<int>(kCieRows - 1) * kCieStepNm;  // of 1 nm, each of even density
 
 using Channels = std::array<double, 3>;
 
 // Of a channel of linear Rec. 709 to D65's light, up to a factor.
-Channels sensitivityOf(const ObserverRow& r) {
+Channels sensitivityOf(const CieRow& r) {
     const glm::dvec3 s = r.d65 * rec709FromXyz(glm::dvec3(r.x, r.y, r.z));
     return {s.x, s.y, s.z};
 }
 
-std::array<Channels, kRows> sensitivities() {
-    std::array<Channels, kRows> out{};
+std::array<Channels, kCieRows> sensitivities() {
+    std::array<Channels, kCieRows> out{};
     Channels sum{};
-    for (size_t i = 0; i < kRows; ++i) {
-        out[i] = sensitivityOf(kObserver[i]);
+    for (size_t i = 0; i < kCieRows; ++i) {
+        out[i] = sensitivityOf(kCie[i]);
         for (size_t c = 0; c < 3; ++c) sum[c] += out[i][c];
     }
     for (Channels& row : out)
@@ -42,10 +34,10 @@ std::array<Channels, kRows> sensitivities() {
 }
 
 // Linear between rows. nm is counted from the first row.
-Channels at(const std::array<Channels, kRows>& rows, double nm) {
-    auto i = static_cast<size_t>(nm / kStepNm);
-    if (i > kRows - 2) i = kRows - 2;
-    const double t = nm / kStepNm - static_cast<double>(i);
+Channels at(const std::array<Channels, kCieRows>& rows, double nm) {
+    auto i = static_cast<size_t>(nm / kCieStepNm);
+    if (i > kCieRows - 2) i = kCieRows - 2;
+    const double t = nm / kCieStepNm - static_cast<double>(i);
     Channels out{};
     for (size_t c = 0; c < 3; ++c) out[c] = (1 - t) * rows[i][c] + t * rows[i + 1][c];
     return out;
@@ -64,7 +56,7 @@ struct Entry {
 using Table = std::array<Entry, kWavelengths + 1>;
 
 Table wavelengthTable() {
-    const std::array<Channels, kRows> rows = sensitivities();
+    const std::array<Channels, kCieRows> rows = sensitivities();
     std::array<double, static_cast<size_t>(kBins)> mass{};
     double total = 0;
     for (size_t b = 0; b < mass.size(); ++b) {
@@ -81,7 +73,7 @@ Table wavelengthTable() {
         const double target = total * (static_cast<double>(n) - 0.5) / kWavelengths;
         while (below + mass[bin] < target) below += mass[bin++];
         const double nm = static_cast<double>(bin) + (target - below) / mass[bin];
-        table[n].nm = static_cast<float>(kFirstNm + nm);
+        table[n].nm = static_cast<float>(kCieFirstNm + nm);
         const Channels s = at(rows, nm);
         for (size_t c = 0; c < 3; ++c) {
             weights[n][c] = s[c] / mass[bin];

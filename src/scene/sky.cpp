@@ -8,6 +8,7 @@
 
 #include "base/color.h"
 #include "base/error.h"
+#include "sampling/cie.h"
 
 namespace lsde {
 
@@ -112,17 +113,6 @@ constexpr std::array<double, 38> kOzone{0.001, 0.001, 0.002, 0.002, 0.002, 0.003
                                         0.120, 0.115, 0.125, 0.120, 0.105, 0.090, 0.079, 0.067, 0.057, 0.048,
                                         0.036, 0.028, 0.023, 0.018, 0.014, 0.011, 0.010, 0.009};
 
-// CIE 1931 observer, fitted (Wyman, Sloan & Shirley 2013, "Simple Analytic Approximations to the CIE XYZ Color Matching
-// Functions", multi-lobe).
-glm::dvec3 observer(double nm) {
-    const auto lobe = [&](double peak, double below, double above) {
-        return std::exp(-0.5 * square((nm - peak) / (nm < peak ? below : above)));
-    };
-    return {1.056 * lobe(599.8, 37.9, 31.0) + 0.362 * lobe(442.0, 16.0, 26.7) - 0.065 * lobe(501.1, 20.4, 26.2),
-            0.821 * lobe(568.8, 46.9, 40.5) + 0.286 * lobe(530.9, 16.3, 31.1),
-            1.217 * lobe(437.0, 11.8, 36.0) + 0.681 * lobe(459.0, 26.0, 13.8)};
-}
-
 // Share of light that comes through the air (Preetham et al., appendix A.1).
 double transmittance(double nm, double ozone, double turbidity, double airMass) {
     constexpr double kOzoneCm = 0.35, kAerosolExponent = 1.3;
@@ -163,7 +153,7 @@ Rgb sunRadiance(const SkySettings& s) {
     glm::dvec3 xyz(0);
     for (size_t i = 0; i < kSunSpectrum.size(); ++i) {
         const double nm = kFirstNm + kStepNm * static_cast<double>(i);
-        xyz += observer(nm) * (100 * kSunSpectrum[i] * transmittance(nm, kOzone[i], s.turbidity, airMass));
+        xyz += cieObserver(nm) * (100 * kSunSpectrum[i] * transmittance(nm, kOzone[i], s.turbidity, airMass));
     }
     return fromXyz(xyz * (kLumensPerWatt * kStepNm));
 }
