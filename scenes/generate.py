@@ -11,7 +11,7 @@ import numpy as np
 
 from gltf_writer import (Node, camera, emitter, glass, lambert, lamp, looking, metal, point_light, spot_light, sun, thin_glass, upright,
                          write_glb)
-from shapes import box_inside, convex, flipped, heightfield, icosphere, join, quad, revolve, square
+from shapes import (box_inside, convex, facets, flipped, heightfield, icosphere, join, level_with_holes, quad, revolve, square)
 
 GREY = lambert(0.7, 0.7, 0.7)
 GLASS = glass(1.5)
@@ -121,24 +121,65 @@ WATER = glass(1.33, absorption=((0.55, 0.8, 0.9), 1))
 WALL, INNER, BASE, SURFACE, RIM = 0.4, 0.35, 0.08, 0.7, 1  # m: radii and heights of the tumbler and of the water's surface
 
 
-def tumbler_scene(water_mesh, priorities):
+ABOVE = (0, 0.005, 0)  # keeps the solids off the floor
+
+
+def tumbler_and_water(water_mesh, priorities):
     # The inside has a ring at the water's surface, so that water can share its triangles.
     inside = [(WALL, RIM), (INNER, RIM), (INNER, SURFACE), (INNER, BASE), (0, BASE)]
     tumbler = revolve([(0, 0), (WALL, 0)] + inside, 96)
-    above = (0, 0.005, 0)  # keeps the solids off the floor
     extras = [dict(priority=p) for p in priorities] or [{}, {}]
-    return [camera((0, 1.7, 3.4), (0, 0.4, 0), 32), floor(6), Node('tumbler', above, mesh=tumbler, material=GLASS, extras=extras[0]),
-            Node('water', above, mesh=water_mesh, material=WATER, extras=extras[1]), lamp(0.5, (1.5, 2.5, 0.5), (0, 0.4, 0), 40)]
+    return [floor(6), Node('tumbler', ABOVE, mesh=tumbler, material=GLASS, extras=extras[0]),
+            Node('water', ABOVE, mesh=water_mesh, material=WATER, extras=extras[1]), lamp(0.5, (1.5, 2.5, 0.5), (0, 0.4, 0), 40)]
+
+
+def water_against_the_tumbler():
+    return flipped(revolve([(INNER, SURFACE), (INNER, BASE), (0, BASE)], 96))  # the tumbler's own triangles, turned round
+
+
+def water_into_the_tumbler():
+    radius, bottom = INNER + 0.02, BASE - 0.03
+    return revolve([(0, bottom), (radius, bottom), (radius, SURFACE), (0, SURFACE)], 96)
 
 
 def water_glass_exact():
-    side = flipped(revolve([(INNER, SURFACE), (INNER, BASE), (0, BASE)], 96))  # the tumbler's own triangles, turned round
-    return tumbler_scene(join(side, revolve([(INNER, SURFACE), (0, SURFACE)], 96)), ())
+    water = join(water_against_the_tumbler(), revolve([(INNER, SURFACE), (0, SURFACE)], 96))
+    return [camera((0, 1.7, 3.4), (0, 0.4, 0), 32)] + tumbler_and_water(water, ())
 
 
 def water_glass_overlap():
-    radius, bottom = INNER + 0.02, BASE - 0.03
-    return tumbler_scene(revolve([(0, bottom), (radius, bottom), (radius, SURFACE), (0, SURFACE)], 96), (2, 1))
+    return [camera((0, 1.7, 3.4), (0, 0.4, 0), 32)] + tumbler_and_water(water_into_the_tumbler(), (2, 1))
+
+
+def ice_cubes():
+    """Two, the planes of each: afloat, askew, off each other and off the glass."""
+    for centre, turn, tilt in (((-0.15, 0.66, 0.05), 20, 12), ((0.16, 0.65, -0.04), 65, 25)):
+        turned = rotation((0, 1, 0), turn) @ rotation((0.6, 0, 0.8), tilt)
+        yield [(s * axis, s * axis @ centre + 0.11) for axis in turned.T for s in (1, -1)]
+
+
+def iced(water_mesh, ice_meshes, priorities):
+    ice = [Node(f'ice{i}', ABOVE, mesh=mesh, material=glass(1.31), extras=dict(priority=priorities[2]) if priorities else {})
+           for i, mesh in enumerate(ice_meshes)]
+    return [camera((-0.6, 1.7, 1.9), (0.05, 0.48, 0), 40)] + tumbler_and_water(water_mesh, priorities[:2]) + ice
+
+
+def iced_water_exact():
+    # Above and below water the ice has faces of its own. Those below are the water's as well, whose surface is cut to fit.
+    wet, dry, outlines = [], [], []
+    for cube in ice_cubes():
+        *below, cap = facets(cube + [((0, 1, 0), SURFACE)])
+        wet.append(join(*below))
+        dry.append(join(*facets(cube + [((0, -1, 0), -SURFACE)])[:-1]))
+        outlines.append(cap.positions)
+    angles = np.arange(96) * (2 * math.pi / 96)
+    circle = np.stack([INNER * np.cos(angles), np.full(96, SURFACE), -INNER * np.sin(angles)], axis=1)
+    water = join(water_against_the_tumbler(), level_with_holes(circle, outlines), *(flipped(w) for w in wet))
+    return iced(water, [join(w, d) for w, d in zip(wet, dry)], ())
+
+
+def iced_water_overlap():
+    return iced(water_into_the_tumbler(), [convex(cube) for cube in ice_cubes()], (3, 1, 2))
 
 
 def nested():
@@ -150,9 +191,8 @@ def nested():
     middle = [(0.347 * math.cos(a), 0.95 + 0.407 * math.sin(a)) for a in angle[:9]]  # half-way into the wall
     wine = revolve([(0, middle[0][1])] + middle[1:] + [(0, middle[-1][1])], 96)
     red = glass(1.34, absorption=((0.6, 0.05, 0.1), 0.25))
-    above = (0, 0.005, 0)
-    return [camera((0, 2, 4), (0, 0.6, 0), 34), floor(6), Node('goblet', above, mesh=goblet, material=GLASS, extras=dict(priority=3)),
-            Node('wine', above, mesh=wine, material=red, extras=dict(priority=1)),
+    return [camera((0, 2, 4), (0, 0.6, 0), 34), floor(6), Node('goblet', ABOVE, mesh=goblet, material=GLASS, extras=dict(priority=3)),
+            Node('wine', ABOVE, mesh=wine, material=red, extras=dict(priority=1)),
             ball('ice', (0.08, 0.93, 0.03), 0.12, glass(1.31), level=4, priority=2), lamp(0.5, (-1.6, 2.6, -0.4), (0, 0.5, 0), 50)]
 
 
@@ -269,7 +309,7 @@ def furnace_glass():
 
 
 SCENES = [glass_sphere, glass_sphere_small, point_glass_small, pool_small, ring, cornell_small, lights, pane, pane_ball, rough_metal,
-          rough_metal_area, bent_normals, water_glass_exact, water_glass_overlap, nested, prism, prism_small, flint_ball, gem, magnifier, floor_lamp, furnace, furnace_glass]
+          rough_metal_area, bent_normals, water_glass_exact, water_glass_overlap, iced_water_exact, iced_water_overlap, nested, prism, prism_small, flint_ball, gem, magnifier, floor_lamp, furnace, furnace_glass]
 
 
 def main(wanted):

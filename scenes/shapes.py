@@ -87,10 +87,13 @@ def heightfield(size, cells, height, normal):
     return Mesh(np.stack([x, height(x, z), z], axis=1), _unit(np.stack(normal(x, z), axis=1)), _cells(cells + 1, cells + 1))
 
 
-def convex(planes):
-    """The solid n . p <= d for each (n, d) of planes, flat facets; n need not be unit."""
+def facets(planes):
+    """The faces of the solid n . p <= d, flat, one for each (n, d) of planes in their order; n need not be unit.
+
+    A plane that bounds nothing of the solid has an empty mesh.
+    """
     planes = [(np.array(n, float) / np.linalg.norm(n), d / np.linalg.norm(n)) for n, d in planes]
-    facets = []
+    faces = []
     for k, (n, d) in enumerate(planes):
         u = _unit(np.cross(n, np.eye(3)[np.argmin(abs(n))]))
         v = np.cross(n, u)
@@ -101,10 +104,15 @@ def convex(planes):
                 outline = _clipped(outline, m, e)
         # Facets that meet at a corner find it each by itself: rounded, it is one.
         corners = [p for i, p in enumerate(np.round(outline, 7)) if np.linalg.norm(p - np.round(outline, 7)[i - 1]) > 1e-6]
-        if len(corners) > 2:
-            fan = [[0, i, i + 1] for i in range(1, len(corners) - 1)]
-            facets.append(Mesh(np.array(corners), np.tile(n, (len(corners), 1)), np.array(fan)))
-    return join(*facets)
+        fan = [[0, i, i + 1] for i in range(1, len(corners) - 1)]
+        faces.append(Mesh(np.array(corners), np.tile(n, (len(corners), 1)), np.array(fan)) if fan else
+                     Mesh(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros((0, 3), int)))
+    return faces
+
+
+def convex(planes):
+    """The solid of facets(), as one mesh."""
+    return join(*facets(planes))
 
 
 def _clipped(outline, n, d):
@@ -117,6 +125,56 @@ def _clipped(outline, n, d):
         if (a <= 0) != (b <= 0):
             kept.append(p + (q - p) * (a / (a - b)))
     return kept
+
+
+def _left(a, b, c):
+    """Twice the area of a triangle in the plane, > 0 if its corners turn to the left."""
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
+def _crosses(a, b, c, d):
+    """Whether the inner parts of two segments meet."""
+    return _left(a, b, c) * _left(a, b, d) < 0 and _left(c, d, a) * _left(c, d, b) < 0
+
+
+def _bridged(outline, holes, points):
+    """One outline, of indices, for all: each hole is reached by the shortest cut that crosses nothing."""
+    edges = [e for loop in (outline, *holes) for e in zip(loop, loop[1:] + loop[:1])]
+    for hole in holes:
+        once = [i for i, k in enumerate(outline) if outline.count(k) == 1]  # where a cut ends already, sides would be mixed up
+        cuts = sorted(product(once, range(len(hole))),
+                      key=lambda ij: np.linalg.norm(points[outline[ij[0]]] - points[hole[ij[1]]]))
+        i, j = next((i, j) for i, j in cuts
+                    if not any(_crosses(points[outline[i]], points[hole[j]], points[a], points[b]) for a, b in edges))
+        edges.append((outline[i], hole[j]))
+        outline = outline[:i + 1] + hole[j:] + hole[:j + 1] + outline[i:]
+    return outline
+
+
+def level_with_holes(outline, holes):
+    """The level surface that faces +Y inside of an outline and outside of holes in it (corners n x 3, either way round)."""
+    def turned(loop, left):
+        area = sum(_left((0, 0), p, q) for p, q in zip(loop[:, [2, 0]], np.roll(loop[:, [2, 0]], -1, axis=0)))
+        return loop if (area > 0) == left else loop[::-1]
+
+    loops = [turned(np.array(outline), True)] + [turned(np.array(h), False) for h in holes]
+    positions = np.concatenate(loops)
+    points = positions[:, [2, 0]]  # z, x: a right-handed plane with +Y towards the viewer
+    starts = np.cumsum([0] + [len(loop) for loop in loops])
+    indices = [list(range(a, b)) for a, b in zip(starts, starts[1:])]
+    rest, triangles = _bridged(indices[0], indices[1:], points), []
+    while len(rest) > 2:  # cut off an ear (Meisters 1975)
+        for i in range(len(rest)):
+            ear = rest[i - 1], rest[i], rest[(i + 1) % len(rest)]
+            a, b, c = points[list(ear)]
+            inside = (_left(a, b, p) >= 0 and _left(b, c, p) >= 0 and _left(c, a, p) >= 0 for p in (points[k] for k in rest if k not in ear))
+            if _left(a, b, c) > 1e-12 and not any(inside):
+                break
+        else:
+            raise ValueError('outlines that cross')
+        triangles.append(ear)
+        del rest[i]
+    return Mesh(positions, np.tile((0.0, 1.0, 0.0), (len(positions), 1)), np.array(triangles))
 
 
 def _ring(radius, y, normal, segments):

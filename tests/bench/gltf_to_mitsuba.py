@@ -5,8 +5,8 @@ usage: gltf_to_mitsuba.py SCENE.glb -o PICTURE.exr [--spp N] [--seed K] [--size 
 
 Writes PICTURE.exr and its two independent halves PICTURE.a.exr and PICTURE.b.exr. Alike are: Lambert's diffuse (glTF's
 dielectric of specularFactor 0; with --coats-as-diffuse any, without its coat), solids of KHR_materials_volume with their
-roughness (constant or textured) and attenuation, white metals (Mitsuba has no Schlick), emissive meshes, point, spot and
-directional lights. All else is refused. Needs mitsuba, Pillow and numpy; DRJIT_LIBLLVM_PATH names an LLVM other than 15.
+roughness (constant or textured) and attenuation, alone or touching where they share triangles, white metals (Mitsuba has no
+Schlick), emissive meshes, point, spot and directional lights. All else is refused. Needs mitsuba, Pillow and numpy; DRJIT_LIBLLVM_PATH names an LLVM other than 15.
 """
 import argparse
 import io
@@ -14,6 +14,7 @@ import json
 import math
 import struct
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 
 import mitsuba as mi
@@ -136,30 +137,71 @@ def srgb_to_linear(c):
     return np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
 
 
-def mesh(glb, primitive, world, material, name):
+@dataclass
+class Body:
+    name: str
+    positions: np.ndarray  # n x 3, in the scene's axes
+    normals: np.ndarray | None  # n x 3
+    coordinates: np.ndarray | None  # n x 2, of textures
+    triangles: np.ndarray  # m x 3
+    material: tuple  # Materials.of()
+
+
+def body(glb, primitive, world, material, name):
     """A mirroring node turns triangles over, which glTF's winding rule undoes."""
-    bsdf, medium, radiance = material
     attributes = primitive['attributes']
     positions = glb.accessor(attributes['POSITION']) @ world[:3, :3].T + world[:3, 3]
     triangles = glb.accessor(primitive['indices']).reshape(-1, 3) if 'indices' in primitive else np.arange(len(positions)).reshape(-1, 3)
     if np.linalg.det(world[:3, :3]) < 0:
         triangles = triangles[:, [0, 2, 1]]
+    normals = glb.accessor(attributes['NORMAL']) @ np.linalg.inv(world[:3, :3]) if 'NORMAL' in attributes else None
+    coordinates = glb.accessor(attributes['TEXCOORD_0']) if 'TEXCOORD_0' in attributes else None
+    return Body(name, positions, normals, coordinates, triangles, material)
+
+
+def is_solid(one):
+    return one.material[0]['type'] in ('dielectric', 'roughdielectric')
+
+
+def interfaces(bodies):
+    """(body, some of its triangles, what lies before them or None): where two solids share triangles, one of the two has
+    them, and the other is what lies before them. Solids that overlap are not told, as Mitsuba has no priorities."""
+    def corners(one):
+        return [frozenset(map(tuple, np.round(one.positions[t], 5))) for t in one.triangles]
+
+    solids = [one for one in bodies if is_solid(one)]
+    owners = {}  # of each triangle that is a solid's
+    for number, one in enumerate(solids):
+        for key in corners(one):
+            owners.setdefault(key, []).append(number)
+    yield from ((one, one.triangles, None) for one in bodies if not is_solid(one))
+    for number, one in enumerate(solids):
+        before = np.array([next((k for k in owners[key] if k != number), -1) for key in corners(one)])
+        for other in sorted(set(before[(before > number) | (before == -1)])):
+            yield one, one.triangles[before == other], solids[other] if other >= 0 else None
+
+
+def shape(one, triangles, before, name):
+    bsdf, medium, radiance = one.material
     properties = mi.Properties()
+    if before:
+        bsdf = bsdf | dict(ext_ior=before.material[0]['int_ior'])
+        if before.material[1]:
+            properties['exterior'] = mi.load_dict(before.material[1])
     properties['bsdf'] = mi.load_dict(bsdf)
     if any(radiance):
         properties['emitter'] = mi.load_dict(dict(type='area', radiance=rgb(radiance)))
     if medium:
         properties['interior'] = mi.load_dict(medium)
-    out = mi.Mesh(name, len(positions), len(triangles), has_vertex_normals='NORMAL' in attributes,
-                  has_vertex_texcoords='TEXCOORD_0' in attributes, props=properties)
+    out = mi.Mesh(name, len(one.positions), len(triangles), has_vertex_normals=one.normals is not None,
+                  has_vertex_texcoords=one.coordinates is not None, props=properties)
     parameters = mi.traverse(out)
-    parameters['vertex_positions'] = positions.astype(np.float32).ravel()
+    parameters['vertex_positions'] = one.positions.astype(np.float32).ravel()
     parameters['faces'] = triangles.astype(np.uint32).ravel()
-    if 'NORMAL' in attributes:
-        normals = glb.accessor(attributes['NORMAL']) @ np.linalg.inv(world[:3, :3])
-        parameters['vertex_normals'] = (normals / np.linalg.norm(normals, axis=1, keepdims=True)).astype(np.float32).ravel()
-    if 'TEXCOORD_0' in attributes:
-        parameters['vertex_texcoords'] = np.array(glb.accessor(attributes['TEXCOORD_0']), np.float32).ravel()
+    if one.normals is not None:
+        parameters['vertex_normals'] = (one.normals / np.linalg.norm(one.normals, axis=1, keepdims=True)).astype(np.float32).ravel()
+    if one.coordinates is not None:
+        parameters['vertex_texcoords'] = np.array(one.coordinates, np.float32).ravel()
     parameters.update()
     return out
 
@@ -190,14 +232,17 @@ def sensor(glb, node, world, size):
 def convert(glb, arguments, channel):
     materials = Materials(glb, arguments.coats_as_diffuse, channel)
     scene = dict(type='scene', integrator=dict(type=arguments.integrator, max_depth=DEPTH))
+    bodies = []
     for number, (node, world) in enumerate(placed(glb)):
         if 'mesh' in node:
             for i, primitive in enumerate(glb.json['meshes'][node['mesh']]['primitives']):
-                scene[f'mesh{number}_{i}'] = mesh(glb, primitive, world, materials.of(primitive.get('material')), f'mesh{number}_{i}')
+                bodies.append(body(glb, primitive, world, materials.of(primitive.get('material')), f'mesh{number}_{i}'))
         if 'KHR_lights_punctual' in node.get('extensions', {}):
             scene[f'light{number}'] = light(glb, node, world)
         if 'camera' in node and 'sensor' not in scene and arguments.camera in (None, node.get('name')):
             scene['sensor'] = sensor(glb, node, world, arguments.size)
+    for number, (one, triangles, before) in enumerate(interfaces(bodies)):
+        scene[f'{one.name}_{number}'] = shape(one, triangles, before, f'{one.name}_{number}')
     return mi.load_dict(scene)
 
 

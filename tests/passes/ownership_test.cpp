@@ -43,3 +43,18 @@ TEST_CASE(
     checkAgreement(exact, estimate("water-glass-exact", settingsFor("path", 32, 2048), 6, 4), 0.03);
     checkAgreement(overlap, estimate("water-glass-overlap", settingsFor("path", 32, 2048), 6, 4), 0.03);
 }
+
+TEST_CASE("ice afloat in a glass of water, as overlapping and as touching meshes: paths are the same ones") {
+    // One seed's random numbers meet the same surfaces at the same places, but for rounding.
+    const Estimate overlap = estimate("iced-water-overlap", settingsFor("path", 32, 64), 2, 8);
+    const Estimate touching = estimate("iced-water-exact", settingsFor("path", 32, 64), 2, 8);
+    for (size_t i = 0; i < overlap.mean.size(); ++i) {
+        CAPTURE(i);
+        CHECK(overlap.mean[i] == doctest::Approx(touching.mean[i]).epsilon(0.01));
+    }
+}
+
+TEST_CASE("and photons of both agree with each other") {
+    checkAgreement(estimate("iced-water-overlap", settingsFor("photon", 32, 16), 4, 4),
+                   estimate("iced-water-exact", settingsFor("photon", 32, 16), 4, 4), 0.02);
+}
