@@ -6,7 +6,7 @@ usage: gltf_to_mitsuba.py SCENE.glb -o PICTURE.exr [--spp N] [--seed K] [--size 
 Writes PICTURE.exr and its two independent halves PICTURE.a.exr and PICTURE.b.exr. Alike are: Lambert's diffuse (glTF's
 dielectric of specularFactor 0; with --coats-as-diffuse any, without its coat), solids of KHR_materials_volume with their
 roughness (constant or textured) and attenuation, alone or touching where they share triangles, white metals (Mitsuba has no
-Schlick), emissive meshes, point, spot and directional lights. All else is refused. Needs mitsuba, Pillow and numpy; DRJIT_LIBLLVM_PATH names an LLVM other than 15.
+Schlick), emissive meshes, point, spot and directional lights. All else is refused. Needs mitsuba, Pillow, numpy and OpenEXR 3.3; DRJIT_LIBLLVM_PATH names an LLVM other than 15.
 """
 import argparse
 import io
@@ -19,6 +19,7 @@ from pathlib import Path
 
 import mitsuba as mi
 import numpy as np
+import OpenEXR
 from PIL import Image
 
 DEPTH = 64
@@ -214,7 +215,18 @@ def light(glb, node, world):
         return dict(type='directional', direction=direction, irradiance=intensity)
     if entry['type'] == 'point':
         return dict(type='point', position=position, intensity=intensity)
-    raise SystemExit(f'{node.get("name")}: a spot, whose falloff differs')
+    cone = entry.get('spot', {})
+    to_world = mi.ScalarTransform4f().look_at(position, np.add(position, direction).tolist(), (world[:3, 1]).tolist())
+    return dict(type='spot', to_world=to_world, intensity=intensity, **falloff(cone.get('innerConeAngle', 0), cone.get('outerConeAngle', math.pi / 4)))
+
+
+def falloff(inner, outer):
+    """Mitsuba's cone dims along the angle, glTF's along its cosine, squared: that is a picture which an even cone projects."""
+    axis = math.tan(outer) * ((np.arange(2048) + 0.5) / 1024 - 1)
+    cosine = 1 / np.sqrt(1 + axis ** 2 + axis[:, None] ** 2)
+    dimmed = np.clip((cosine - math.cos(outer)) / max(0.001, math.cos(inner) - math.cos(outer)), 0, 1) ** 2
+    bitmap = mi.Bitmap(np.repeat(dimmed[..., None], 3, axis=2).astype(np.float32))
+    return dict(cutoff_angle=math.degrees(outer), beam_width=math.degrees(outer) * 0.9999, texture=dict(type='bitmap', bitmap=bitmap, raw=True))
 
 
 def sensor(glb, node, world, size):
@@ -255,6 +267,12 @@ def render(scene, arguments):
     return halves
 
 
+def write(path, picture):
+    """Not by mi.Bitmap, whose writer was seen to hang in a process bound to one core."""
+    header = dict(compression=OpenEXR.ZIP_COMPRESSION, type=OpenEXR.scanlineimage)
+    OpenEXR.File(header, dict(RGB=np.ascontiguousarray(picture, np.float32))).write(str(path))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('scene', type=Path)
@@ -279,7 +297,7 @@ def main():
     else:
         halves = render(convert(glb, arguments, 0), arguments)
     for suffix, picture in (('', sum(halves) / 2), ('.a', halves[0]), ('.b', halves[1])):
-        mi.Bitmap(picture.astype(np.float32)).write(str(arguments.output.with_suffix(suffix + arguments.output.suffix)))
+        write(arguments.output.with_suffix(suffix + arguments.output.suffix), picture)
     print('mean', *np.mean(halves, axis=(0, 1, 2)), file=sys.stderr)
 
 
