@@ -270,12 +270,16 @@ def gem():
             spot_light('spot', (-1, 4, 2.5), (0, 0.3, 0), 120, 8, 9), lamp(1.5, (3, 4, -2), (0, 0, 0), 1)]
 
 
+def lens(aperture, curvature):
+    """Biconvex, about Y: radii of its outline and of its faces."""
+    sag = curvature - math.sqrt(curvature ** 2 - aperture ** 2)
+    arc = [(aperture * t, sag - (curvature - math.sqrt(curvature ** 2 - (aperture * t) ** 2))) for t in np.linspace(0, 1, 13)]
+    return revolve([(r, -y - 0.015) for r, y in arc] + [(r, y + 0.015) for r, y in arc[::-1]], 96)
+
+
 def magnifier():
     aperture, curvature, n = 0.45, 1.3, POLYCARBONATE['ior']
-    sag = curvature - math.sqrt(curvature ** 2 - aperture ** 2)
     height = 0.72 * curvature / (2 * (n - 1))  # of the lens over the paper: short of its focal length
-    arc = [(aperture * t, sag - (curvature - math.sqrt(curvature ** 2 - (aperture * t) ** 2))) for t in np.linspace(0, 1, 13)]
-    lens = revolve([(r, -y - 0.015) for r, y in arc] + [(r, y + 0.015) for r, y in arc[::-1]], 96)
     rim = revolve([(aperture + 0.002, -0.03), (aperture + 0.05, -0.03), (aperture + 0.05, 0.03), (aperture + 0.002, 0.03), (aperture + 0.002, -0.03)], 96)
     grip = revolve([(0, 0), (0.04, 0), (0.05, 0.1), (0.035, 0.6), (0, 0.6)], 32)
     light = np.array([0.3, -1, 0.1]) / math.sqrt(1.1)
@@ -283,10 +287,17 @@ def magnifier():
     tilt = upright(-light)
     aside = np.cross(light, (0.3, 0, 1))
     aside /= np.linalg.norm(aside)
-    return [camera((-0.5, 2.5, 2.3), (-0.05, 0.3, 0), 34, 512, 384), floor(12), Node('lens', centre, tilt, mesh=lens, material=glass(**POLYCARBONATE)),
+    return [camera((-0.5, 2.5, 2.3), (-0.05, 0.3, 0), 34, 512, 384), floor(12), Node('lens', centre, tilt, mesh=lens(aperture, curvature), material=glass(**POLYCARBONATE)),
             Node('rim', centre, tilt, mesh=rim, material=metal(0.8, 0.65, 0.4, roughness=0.3)),
             Node('grip', tuple(np.array(centre) + (aperture + 0.04) * aside), upright(aside), mesh=grip, material=lambert(0.25, 0.1, 0.05)),
             sun(2.2, tuple(light)), lamp(2, (-2, 4, 2), (0, 0, 0), 0.7)]
+
+
+def lens_small():
+    light, centre = (0.6, 4, 0), (0, 0.65, 0)  # short of the focus
+    tilt = upright(np.subtract(light, centre))
+    return [camera((-0.2, 1.5, 2.4), (-0.12, 0, 0), 11, 128, 128), floor(4),
+            Node('lens', centre, tilt, mesh=lens(0.45, 1.3), material=glass(**FLINT)), spot_light('spot', light, centre, 30, 11, 12)]
 
 
 # ---- known answers
@@ -309,7 +320,8 @@ def furnace_glass():
 
 
 SCENES = [glass_sphere, glass_sphere_small, point_glass_small, pool_small, ring, cornell_small, lights, pane, pane_ball, rough_metal,
-          rough_metal_area, bent_normals, water_glass_exact, water_glass_overlap, iced_water_exact, iced_water_overlap, nested, prism, prism_small, flint_ball, gem, magnifier, floor_lamp, furnace, furnace_glass]
+          rough_metal_area, bent_normals, water_glass_exact, water_glass_overlap, iced_water_exact, iced_water_overlap, nested, prism, prism_small, flint_ball, gem, magnifier, lens_small, floor_lamp, furnace,
+          furnace_glass]
 
 
 def main(wanted):

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """Holds a dispersing scene against Mitsuba 3, region by region.
 
-usage: spectral.py SCENE.glb OURS.exr [--light] [--wavelengths N] [--spp N] [--blocks N]
+usage: spectral.py SCENE.glb OURS.exr [--light] [--wavelengths N] [--spp N] [--blocks N] [--rings X,Z,R1,R2,...]
 
 Mitsuba's dielectric takes no spectral index, so that its picture is a sum of monochromatic ones: at each of N evenly spaced
 wavelengths all solids have Cauchy's index there, and the picture is weighed by D65 and the observer's curves (Mitsuba's own) into
 linear Rec. 709. --light traces from the lights (for delta lights; what is seen through glass is then missing, so OURS.exr is to be
-rendered with --only 'L.*DE'). Prints the flux of each block of the picture and channel. Needs mitsuba 3, numpy, OpenEXR 3.3 (pip),
+rendered with --only 'L.*DE'). Prints the flux of each block of the picture and channel, and with --rings that between circles of
+these radii around a point of the floor y = 0. Needs mitsuba 3, numpy, OpenEXR 3.3 (pip),
 and scenes by generate.py: triangles with positions and normals, nodes without children.
 """
 import argparse
@@ -142,6 +143,26 @@ def by_blocks(picture, n):
     return picture[:h // n * n, :w // n * n].reshape(n, h // n, n, w // n, 3).mean(axis=(1, 3))
 
 
+def on_floor(glb, size):
+    """(x, z) where the ray through each pixel's middle meets the plane y = 0; h x w x 2."""
+    node = next(n for n in glb.json['nodes'] if 'camera' in n)
+    m, half = placement(node), math.tan(glb.json['cameras'][node['camera']]['perspective']['yfov'] / 2)
+    w, h = size
+    x, y = np.meshgrid((2 * np.arange(w) + 1 - w) / h * half, (h - 1 - 2 * np.arange(h)) / h * half)
+    ray = np.stack([x, y, -np.ones_like(x)], axis=2) @ m[:3, :3].T
+    return (m[:3, 3] - ray * (m[1, 3] / ray[..., 1:2]))[..., [0, 2]]
+
+
+def print_rings(glb, rings, ours, halves):
+    distance = np.linalg.norm(on_floor(glb, ours.shape[1::-1]) - rings[:2], axis=2)
+    theirs = sum(halves) / 2
+    for low, high in zip([0] + rings[2:], rings[2:] + [math.inf]):
+        ring = (distance >= low) & (distance < high)
+        flux = theirs[ring].sum(axis=0)
+        print(f'ring {low:g} to {high:g} m: {ring.sum()} pixels, theirs', np.round(theirs[ring].mean(axis=0), 5), 'ours / theirs',
+              np.round(ours[ring].sum(axis=0) / flux, 4), 'halves apart', np.round((halves[0] - halves[1])[ring].sum(axis=0) / flux, 4))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('scene')
@@ -150,9 +171,10 @@ def main():
     parser.add_argument('--wavelengths', type=int, default=35)
     parser.add_argument('--spp', type=int, default=256)
     parser.add_argument('--blocks', type=int, default=4)
+    parser.add_argument('--rings', type=lambda s: [float(v) for v in s.split(',')])
     a = parser.parse_args()
     ours = OpenEXR.File(a.ours, separate_channels=True).channels()
-    ours = np.stack([ours[c].pixels for c in 'RGB'], axis=2)
+    ours = np.stack([ours[c].pixels for c in 'RGB'], axis=2).astype(float)
     glb = Glb(a.scene)
     spectrum = weights(a.wavelengths)
     mi.set_variant('llvm_ad_mono')
@@ -165,6 +187,8 @@ def main():
             halves[half] = halves[half] + picture
     theirs = (halves[0] + halves[1]) / 2
     noise = by_blocks(halves[0] - halves[1], a.blocks) / 2
+    if a.rings:
+        print_rings(glb, a.rings, ours, halves)
     x, y = by_blocks(ours, a.blocks), by_blocks(theirs, a.blocks)
     print('whole picture: ours / theirs by channel', np.round(ours.mean(axis=(0, 1)) / theirs.mean(axis=(0, 1)), 4))
     most = np.abs(y).max(axis=(0, 1))

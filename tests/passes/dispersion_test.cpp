@@ -88,12 +88,14 @@ TEST_CASE("through a pane of flint each channel's flux is that of its wavelength
     for (int c = 0; c < 3; ++c) CHECK(stored[c] == doctest::Approx(flux[c]).epsilon(1e-3));
 }
 
-TEST_CASE("a prism's rainbow: photons agree with light tracing, channel by channel") {
-    PictureSettings photon = settingsFor("photon", 64, 16, 500'000), light = settingsFor("light", 64, 512);
-    photon.paths = light.paths = {{"rainbow", "LS+DE"}};
-    photon.only = light.only = "LS+DE";
-    const Scene& scene = sceneOf("prism-small");
-    checkAgreement(pictures(scene, photon, 5), pictures(scene, light, 5), "rainbow", 0.02);
+TEST_CASE("a prism's rainbow and a lens's coloured rim: photons agree with light tracing, channel by channel") {
+    for (const char* scene : {"prism-small", "lens-small"}) {
+        CAPTURE(scene);
+        PictureSettings photon = settingsFor("photon", 64, 16, 500'000), light = settingsFor("light", 64, 512);
+        photon.paths = light.paths = {{"rainbow", "LS+DE"}};
+        photon.only = light.only = "LS+DE";
+        checkAgreement(pictures(sceneOf(scene), photon, 5), pictures(sceneOf(scene), light, 5), "rainbow", 0.02);
+    }
 }
 
 TEST_CASE("a flint ball's caustic, seen beside it and through it: photons agree with path tracing") {
