@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from gallery import GALLERY
 from gltf_writer import (Node, camera, emitter, glass, lambert, lamp, looking, metal, point_light, spot_light, sun, thin_glass, upright,
                          write_glb)
 from shapes import (box_inside, convex, facets, flipped, heightfield, icosphere, join, level_with_holes, quad, revolve, square)
@@ -321,7 +322,8 @@ def furnace_glass():
 
 SCENES = [glass_sphere, glass_sphere_small, point_glass_small, pool_small, ring, cornell_small, lights, pane, pane_ball, rough_metal,
           rough_metal_area, bent_normals, water_glass_exact, water_glass_overlap, iced_water_exact, iced_water_overlap, nested, prism, prism_small, flint_ball, gem, magnifier, lens_small, floor_lamp, furnace,
-          furnace_glass]
+          furnace_glass,
+          *GALLERY]
 
 
 def main(wanted):

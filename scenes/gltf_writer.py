@@ -21,10 +21,10 @@ def lambert(r, g, b):
     return _material((r, g, b), double_sided=True, specular=dict(specularFactor=0))
 
 
-def emitter(radiance, albedo=0):
-    """One-sided; a lamp (albedo 0) reflects nothing."""
+def emitter(radiance, albedo=0, color=(1, 1, 1)):
+    """One-sided; a lamp (albedo 0) reflects nothing. Radiance is that of a channel where color is 1."""
     material = _material((albedo,) * 3, specular=dict(specularFactor=0), emissive_strength=dict(emissiveStrength=radiance))
-    return material | dict(emissiveFactor=[1, 1, 1])
+    return material | dict(emissiveFactor=list(color))
 
 
 def glass(ior, absorption=None, roughness=0, abbe=None):
@@ -58,7 +58,7 @@ class Node:
     extras: dict = field(default_factory=dict)
 
 
-def _quaternion(x, y, z):
+def quaternion(x, y, z):
     """Of the rotation whose matrix has these columns."""
     m = np.stack([x, y, z], axis=1)
     # The eigenvector of the largest eigenvalue (Bar-Itzhack 2000): sound for every rotation, half turns included.
@@ -80,8 +80,9 @@ def _frame(main, hint):
 
 def looking(eye, target):
     """Placement of a camera, spot or directional light, which look along their -Z."""
-    x, back, down = _frame(np.subtract(eye, target), (0, -1, 0))
-    return dict(translation=eye, rotation=_quaternion(x, -down, back))
+    behind = np.subtract(eye, target)
+    x, back, down = _frame(behind, (0, -1, 0) if np.any(behind[[0, 2]]) else (0, 0, 1))
+    return dict(translation=eye, rotation=quaternion(x, -down, back))
 
 
 def camera(eye, target, yfov_degrees, width=512, height=512):
@@ -93,12 +94,12 @@ def camera(eye, target, yfov_degrees, width=512, height=512):
 def upright(direction):
     """Rotation that takes +Y to a direction."""
     hint = (0, 0, 1) if abs(direction[2]) < 0.9 * np.linalg.norm(direction) else (1, 0, 0)
-    return _quaternion(*_frame(direction, hint))
+    return quaternion(*_frame(direction, hint))
 
 
-def lamp(size, position, toward, radiance, name='light'):
+def lamp(size, position, toward, radiance, name='light', color=(1, 1, 1)):
     """A square one-sided lamp that faces a point."""
-    return Node(name, position, upright(np.subtract(toward, position)), mesh=square(size), material=emitter(radiance))
+    return Node(name, position, upright(np.subtract(toward, position)), mesh=square(size), material=emitter(radiance, color=color))
 
 
 def sun(irradiance, direction):
@@ -106,9 +107,10 @@ def sun(irradiance, direction):
     return Node('sun', **looking((0, 0, 0), direction), light=dict(type='directional', intensity=irradiance))
 
 
-def spot_light(name, position, toward, intensity, inner_degrees, outer_degrees):
+def spot_light(name, position, toward, intensity, inner_degrees, outer_degrees, color=None):
     cone = dict(innerConeAngle=math.radians(inner_degrees), outerConeAngle=math.radians(outer_degrees))
-    return Node(name, **looking(position, toward), light=dict(type='spot', intensity=intensity, spot=cone))
+    tint = dict(color=list(color)) if color else {}
+    return Node(name, **looking(position, toward), light=dict(type='spot', intensity=intensity, spot=cone, **tint))
 
 
 def point_light(name, position, intensity, color=(1, 1, 1)):
@@ -119,6 +121,7 @@ class _Glb:
     def __init__(self, scene_name):
         self.blob = bytearray()
         self.extensions = set()
+        self.meshes = {}
         self.json = dict(asset=dict(version='2.0', generator='scenes/generate.py'), scene=0,
                          scenes=[dict(name=scene_name, nodes=[])], nodes=[], meshes=[], materials=[], accessors=[], bufferViews=[])
 
@@ -134,6 +137,13 @@ class _Glb:
         return self.add('accessors', dict(bufferView=view, componentType=component, count=count, type=kind, **bounds))
 
     def mesh(self, node):
+        """Nodes that share a Mesh object and a material share it in the file."""
+        key = (id(node.mesh), json.dumps(node.material, sort_keys=True))
+        if key not in self.meshes:
+            self.meshes[key] = self.new_mesh(node)
+        return self.meshes[key]
+
+    def new_mesh(self, node):
         p, n = (a.astype('<f4') for a in (node.mesh.positions, node.mesh.normals))
         short = len(p) < 65535  # 65535 itself would restart the primitive
         attributes = dict(POSITION=self.accessor(p, FLOAT, 'VEC3', VERTICES, min=p.min(axis=0).tolist(), max=p.max(axis=0).tolist()),

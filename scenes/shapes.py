@@ -27,6 +27,19 @@ def flipped(mesh):
     return Mesh(mesh.positions, -mesh.normals, mesh.triangles[:, ::-1])
 
 
+def moved(mesh, by):
+    return Mesh(mesh.positions + np.array(by), mesh.normals, mesh.triangles)
+
+
+def scaled(mesh, factor):
+    return Mesh(mesh.positions * factor, mesh.normals, mesh.triangles)
+
+
+def turned(mesh, rotation):
+    """By a rotation's matrix."""
+    return Mesh(mesh.positions @ rotation.T, mesh.normals @ rotation.T, mesh.triangles)
+
+
 def quad(a, b, c, d):
     corners = np.array([a, b, c, d], float)
     normal = _unit(np.cross(corners[1] - corners[0], corners[2] - corners[0]))
@@ -78,6 +91,18 @@ def _cells(rows, columns, wrap=False):
     a, b = i * columns + j, i * columns + (j + 1) % columns
     c, d = b + columns, a + columns
     return np.concatenate([np.stack([a, d, c], axis=1), np.stack([a, c, b], axis=1)])
+
+
+def fan(centre, line):
+    """Flat triangles from one point to the pieces of a line, seen with the line running clockwise about the point."""
+    corners = np.concatenate([[centre], line])
+    normal = _unit(np.cross(corners[2] - corners[0], corners[1] - corners[0]))
+    return Mesh(corners, np.tile(normal, (len(corners), 1)), np.array([[0, i + 1, i] for i in range(1, len(line))]))
+
+
+def strip(lower, upper):
+    """Flat-shaded band between two polylines of as many points, seen with lower below and running to the right."""
+    return join(*(quad(lower[i], lower[i + 1], upper[i + 1], upper[i]) for i in range(len(lower) - 1)))
 
 
 def heightfield(size, cells, height, normal):
@@ -204,3 +229,26 @@ def revolve(profile, segments, crease_degrees=30):
                                        positions[triangles[:, 2]] - positions[triangles[:, 0]]), axis=1) > 1e-12
         bands.append(Mesh(positions, normals, triangles[keep]))
     return join(*bands)
+
+
+def welded(mesh):
+    """The same mesh, its equal vertices (position and normal to 1e-6) stored once."""
+    rows, index = np.unique(np.round(np.hstack([mesh.positions, mesh.normals]), 6) + 0.0, axis=0, return_inverse=True)
+    return Mesh(rows[:, :3], rows[:, 3:], index.reshape(-1)[mesh.triangles])
+
+
+def spline(points, pieces):
+    """Points of a smooth curve through the given ones, that many for each gap (Catmull-Rom, centripetal by Barry & Goldman 1988)."""
+    p = np.array(points, float)
+    p = np.concatenate([[2 * p[0] - p[1]], p, [2 * p[-1] - p[-2]]])
+    knots = np.concatenate([[0], np.cumsum(np.sqrt(np.linalg.norm(np.diff(p, axis=0), axis=1)))])
+
+    def between(k, low, high, t, a, b):
+        return ((knots[k + high] - t) * a + (t - knots[k + low]) * b) / (knots[k + high] - knots[k + low])
+
+    curve = []
+    for k in range(len(p) - 3):
+        for t in np.linspace(knots[k + 1], knots[k + 2], pieces, endpoint=False):
+            a, b, c = (between(k, i, i + 1, t, p[k + i], p[k + i + 1]) for i in range(3))
+            curve.append(tuple(between(k, 1, 2, t, between(k, 0, 2, t, a, b), between(k, 1, 3, t, b, c))))
+    return curve + [tuple(p[-2])]

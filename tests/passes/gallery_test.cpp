@@ -1,0 +1,118 @@
+// The scenes made to be looked at (scenes/README.md): their light, held against unaimed emission and light tracing.
+#include <doctest/doctest.h>
+
+#include <numeric>
+
+#include "passes/pictures.h"
+#include "passes/scene_source.h"
+
+using namespace lsde;
+using namespace lsde::test;
+
+namespace {
+
+struct Sun {
+    float elevationDeg, azimuthDeg;
+};
+
+struct Exhibit {
+    const char* name;
+    std::optional<Sun> sun;  // of --sky, by which it is lit
+    glm::dvec3 watts;        // that land as L S+ D on all objects
+    double wattsTolerance;
+    double photonsPerPath;  // of the caustic class
+};
+
+const Exhibit& exhibit(const std::string& name) {
+    // Flux: `emit --no-aim`, 40 million paths (chandelier and pool: 4 million, glass blocks: 16 million).
+    static const Exhibit all[] = {
+        {"wine-glass", {}, {0.01969, 0.01471, 0.01325}, 0.02, 0.4225},
+    };
+    return *std::find_if(std::begin(all), std::end(all), [&](const Exhibit& e) { return e.name == name; });
+}
+
+const Scene& sceneOf(const Exhibit& e) {
+    static std::map<std::string, std::unique_ptr<Scene>> loaded;
+    std::unique_ptr<Scene>& scene = loaded[e.name];
+    if (!scene) {
+        SceneSettings settings;
+        if (e.sun) {
+            settings.sky.emplace();
+            settings.sky->sunElevationDeg = e.sun->elevationDeg;
+            settings.sky->sunAzimuthDeg = e.sun->azimuthDeg;
+        }
+        RunContext run(0, 0);
+        scene = loadScene(std::string(LSDE_SCENES) + "/" + e.name + ".glb", settings, run);
+    }
+    return *scene;
+}
+
+const PhotonMap& mapOf(const Exhibit& e) {
+    static std::map<std::string, std::unique_ptr<PhotonMap>> emitted;
+    std::unique_ptr<PhotonMap>& map = emitted[e.name];
+    if (!map) {
+        EmitSettings settings;
+        settings.photons = 120'000;
+        settings.store = Store::Caustic;
+        RunContext run(0, 1);
+        map = std::make_unique<PhotonMap>(emitPhotons(sceneOf(e), settings, run));
+    }
+    return *map;
+}
+
+// Approx alone adds 1 to what its epsilon is a share of.
+doctest::Approx within(double share, double value) { return doctest::Approx(value).epsilon(share).scale(0); }
+
+void checkFlux(const std::string& name) {
+    const Exhibit& e = exhibit(name);
+    const PhotonMap& map = mapOf(e);
+    const size_t objects = map.header.objects.size(), first = static_cast<size_t>(PhotonClass::Caustic) * objects;
+    const auto paths = static_cast<double>(map.header.emittedPaths());
+    for (int c = 0; c < 3; ++c) {
+        CAPTURE(c);
+        double watts = 0;
+        for (size_t o = 0; o < objects; ++o) watts += map.header.ledger.flux[first + o].toDouble(c) / paths;
+        CHECK(watts == within(e.wattsTolerance, e.watts[c]));
+    }
+    CHECK(static_cast<double>(map.photons(PhotonClass::Caustic).count) / paths == within(0.01, e.photonsPerPath));
+    CHECK(map.header.ledger.balance() == FixedRgb());
+}
+
+// Means of the upper rows of a picture 32 pixels wide and high, of what the camera sees neither in mirrors nor through
+// glass (or of the caustics in it); by light tracing, 50 CPU seconds at 64 x 64.
+struct Mean {
+    const char* paths;
+    int rows;
+    glm::dvec3 radiance;
+    double tolerance;  // the noise of 200,000 paths, and what kernels and cached irradiance are off by
+};
+
+void checkPicture(const std::string& name, const std::vector<Mean>& means) {
+    PictureSettings s = settingsFor("photon", 32, 6);
+    for (const Mean& mean : means)
+        s.paths.push_back({mean.paths == std::string("LS+DE") ? "thrown" : "seen", mean.paths});
+    const RenderResult result = render(sceneOf(exhibit(name)), s);
+    for (size_t i = 0; i < means.size(); ++i) {
+        const Mean& mean = means[i];
+        CAPTURE(mean.paths);
+        const RgbImage image = result.image.layer(s.paths[i].name);
+        const auto end = image.pixels.begin() + static_cast<std::ptrdiff_t>(mean.rows) * image.width;
+        const Rgb sum = std::accumulate(image.pixels.begin(), end, Rgb(0));
+        for (int c = 0; c < 3; ++c) {
+            CAPTURE(c);
+            CHECK(sum[c] / static_cast<float>(mean.rows * image.width) == within(mean.tolerance, mean.radiance[c]));
+        }
+    }
+}
+
+}  // namespace
+
+TEST_CASE("a glass of red wine throws as much light on the table, as red, as without aiming") {
+    checkFlux("wine-glass");
+}
+// The table's caustic comes out 2% too bright: where it is uneven on the scale of the kernels, irradiance kept at
+// photons is too high (5% in its brightest part; without the cache it is right).
+TEST_CASE("a small picture of the wine glass is as bright as light tracing has it") {
+    checkPicture("wine-glass",
+                 {{"LS+DE", 32, {0.01169, 0.00699, 0.00568}, 0.035}, {"L.*DE", 32, {0.2540, 0.2247, 0.1851}, 0.003}});
+}
