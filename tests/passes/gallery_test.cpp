@@ -27,6 +27,7 @@ const Exhibit& exhibit(const std::string& name) {
     // Flux: `emit --no-aim`, 40 million paths (chandelier and pool: 4 million, glass blocks: 16 million).
     static const Exhibit all[] = {
         {"wine-glass", {}, {0.01969, 0.01471, 0.01325}, 0.02, 0.4225},
+        {"pool-net", Sun{55, 140}, {1.6077e6, 1.8711e6, 2.1218e6}, 0.005, 0.435},
     };
     return *std::find_if(std::begin(all), std::end(all), [&](const Exhibit& e) { return e.name == name; });
 }
@@ -110,9 +111,12 @@ void checkPicture(const std::string& name, const std::vector<Mean>& means) {
 TEST_CASE("a glass of red wine throws as much light on the table, as red, as without aiming") {
     checkFlux("wine-glass");
 }
+TEST_CASE("so does water on the tiles of a pool under sun and sky") { checkFlux("pool-net"); }
 // The table's caustic comes out 2% too bright: where it is uneven on the scale of the kernels, irradiance kept at
 // photons is too high (5% in its brightest part; without the cache it is right).
 TEST_CASE("a small picture of the wine glass is as bright as light tracing has it") {
     checkPicture("wine-glass",
                  {{"LS+DE", 32, {0.01169, 0.00699, 0.00568}, 0.035}, {"L.*DE", 32, {0.2540, 0.2247, 0.1851}, 0.003}});
 }
+
+TEST_CASE("so are the borders of the pool") { checkPicture("pool-net", {{"L.*DE", 32, {4785, 4094, 3895}, 0.008}}); }
