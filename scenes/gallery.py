@@ -3,8 +3,9 @@ import math
 
 import numpy as np
 
-from gltf_writer import Node, camera, glass, lambert, lamp
-from shapes import fan, heightfield, icosphere, join, quad, revolve, spline, square, strip, turned, welded
+from gltf_writer import Node, camera, emitter, glass, lambert, lamp, metal, spot_light
+from shapes import (box_inside, convex, fan, flipped, heightfield, icosphere, join, moved, quad, revolve, scaled, spline, square,
+                    strip, turned, welded)
 
 # ---- wine on a table; lengths in centimetres, scaled to metres below
 
@@ -120,4 +121,67 @@ def pool_net():
             Node('ball', (-0.75, DEPTH + 0.12, -0.7), scale=0.28, mesh=icosphere(4), material=lambert(0.8, 0.16, 0.08))]
 
 
-GALLERY = [wine_glass, pool_net]
+# ---- a chandelier of fifty lamps
+
+TIERS = [(24, 0.52, 2.05), (16, 0.36, 2.22), (10, 0.2, 2.39)]  # lamps, radius and height of each ring, m
+ROOM, CEILING = 4.6, 3.2  # m: side and height of the room; it hangs in its middle
+
+
+def tube(a, b, radius):
+    a, b = (np.array(p, float) for p in (a, b))
+    length = np.linalg.norm(b - a)
+    side = revolve([(0, 0), (radius, 0), (radius, length), (0, length)], 12)
+    y = (b - a) / length
+    x = np.cross(y, (0.3, 0.2, 1)) / np.linalg.norm(np.cross(y, (0.3, 0.2, 1)))
+    return moved(turned(side, np.stack([x, y, np.cross(x, y)], axis=1)), a)
+
+
+def torus(radius, thickness, y):
+    angle = np.linspace(0, 2 * math.pi, 13)
+    return revolve([(radius + thickness * math.cos(a), y + thickness * math.sin(a)) for a in angle], 72)
+
+
+def cut_drop(radius, half_length):
+    """An ellipsoid's facets: five staggered rows of eight, and a point cut flat at each end."""
+    rows = [(math.radians(-62 + 31 * row), (np.arange(8) + 0.5 * row) * math.pi / 4) for row in range(5)]
+    normals = [(math.cos(t) * math.cos(a), math.sin(t), math.cos(t) * math.sin(a)) for t, angles in rows for a in angles]
+    return convex([(n, math.hypot(radius * math.hypot(n[0], n[2]), half_length * n[1])) for n in normals + [(0, 1, 0), (0, -1, 0)]])
+
+
+def cut_stone(radius):
+    """A table, eight crown facets, and sixteen below so steep that they turn most light from above back up."""
+    crown = [(math.radians(56), np.arange(8) * math.pi / 4, 0.05)]
+    pavilion = [(math.radians(-46), np.arange(8) * math.pi / 4, -0.03), (math.radians(-50), (np.arange(8) + 0.5) * math.pi / 4, -0.03)]
+    planes = [((math.cos(t) * math.cos(a), math.sin(t), math.cos(t) * math.sin(a)), radius * (math.cos(t) + math.sin(t) * y))
+              for t, angles, y in crown + pavilion for a in angles]
+    return convex(planes + [((0, 1, 0), 0.38 * radius)])
+
+
+def chandelier():
+    """Narrow spots in black sockets light one piece of crystal each; the bulbs are what is seen of them."""
+    socket = revolve([(0.011, 0), (0.011, 0.03), (0.008, 0.04), (0, 0.043)], 24, crease_degrees=50)
+    shapes, bulb = (cut_stone(0.027), cut_drop(0.024, 0.036)), icosphere(1)
+    brass, crystal = metal(0.85, 0.62, 0.3, 0.35, double_sided=True), glass(1.6)
+    metalwork, sockets, bulbs, lamps, drops = [tube((0, 2.0, 0), (0, CEILING, 0), 0.008)], [], [], [], []
+    for count, radius, y in TIERS:
+        metalwork.append(torus(radius, 0.007, y + 0.04))
+        metalwork += [tube((0, y + 0.11, 0), (radius * math.cos(a), y + 0.04, radius * math.sin(a)), 0.004)
+                      for a in np.arange(8) * math.pi / 4]
+        for a in (np.arange(count) + 0.5) * 2 * math.pi / count:
+            place = np.array((radius * math.cos(a), y, radius * math.sin(a)))
+            sockets.append(moved(socket, place))
+            bulbs.append(moved(scaled(bulb, 0.009), place - (0, 0.005, 0)))
+            lamps.append(spot_light(f'lamp-{len(lamps) + 1:02}', tuple(place - (0, 0.015, 0)), tuple(place - (0, 1, 0)), 14, 8.5, 9,
+                                    (1, 0.85, 0.65)))
+            drops.append(moved(turned(shapes[len(drops) % 2], rotation_y(math.degrees(1.3 * len(drops)))), place - (0, 0.11, 0)))
+    ball = turned(convex([(n, 0.06) for n in icosphere(1).positions]), rotation_y(10))
+    return [camera((0.4, 1.5, 1.75), (0.02, 2.3, 0), 58), Node('room', mesh=box_inside(ROOM, CEILING), material=lambert(0.56, 0.26, 0.18)),
+            Node('floor', (0, 0.002, 0), mesh=square(ROOM), material=lambert(0.2, 0.12, 0.07)),
+            Node('ceiling', (0, CEILING - 0.002, 0), mesh=flipped(square(ROOM)), material=lambert(0.6, 0.56, 0.5)),
+            Node('brass', mesh=welded(join(*metalwork)), material=brass),
+            Node('sockets', mesh=welded(join(*sockets)), material=lambert(0.02, 0.02, 0.02)),
+            Node('bulbs', mesh=welded(join(*bulbs)), material=emitter(60, color=(1, 0.8, 0.55))),
+            Node('drops', mesh=join(*drops), material=crystal), Node('ball', (0, 1.94, 0), mesh=ball, material=crystal), *lamps]
+
+
+GALLERY = [wine_glass, pool_net, chandelier]
