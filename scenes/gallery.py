@@ -3,9 +3,9 @@ import math
 
 import numpy as np
 
-from gltf_writer import Node, camera, emitter, glass, lambert, lamp, metal, spot_light
-from shapes import (box_inside, convex, fan, flipped, heightfield, icosphere, join, moved, quad, revolve, scaled, spline, square,
-                    strip, turned, welded)
+from gltf_writer import Node, camera, emitter, glass, lambert, lamp, metal, quaternion, spot_light
+from shapes import (box_inside, convex, fan, flipped, heightfield, icosphere, join, moved, quad, revolve, scaled, spline, square, strip,
+                    turned, welded)
 
 # ---- wine on a table; lengths in centimetres, scaled to metres below
 
@@ -184,4 +184,96 @@ def chandelier():
             Node('drops', mesh=join(*drops), material=crystal), Node('ball', (0, 1.94, 0), mesh=ball, material=crystal), *lamps]
 
 
-GALLERY = [wine_glass, pool_net, chandelier]
+# ---- a room behind glass blocks
+
+BLOCK, THICK, JOINT = 0.19, 0.08, 0.012  # m: pitch of the blocks, their thickness, the mortar between them
+COUNT, SILL = 7, 0.7  # blocks along each side of the window; m: height of its lower edge
+LONG, HIGH = 3.6, 2.6  # m: of the room
+
+
+def glass_block():
+    """Closed, flat towards its rim, and with a swell inside of it on both faces; y is across."""
+    size = BLOCK - JOINT - 0.001
+
+    def bump(x, z):
+        u, v = 2 * x / size, 2 * z / size
+        return 0.0028 * ((1 - u ** 4) * (1 - v ** 4)) ** 2 * (0.5 * np.cos(5.2 * u + 1.2 * v) + 0.5 * np.cos(4.1 * v - 2.1 * u + 0.7) - 0.6)
+
+    def normal(x, z):
+        e = 1e-4
+        return (bump(x - e, z) - bump(x + e, z)) / (2 * e), np.ones_like(x), (bump(x, z - e) - bump(x, z + e)) / (2 * e)
+
+    face = moved(heightfield(size, 24, bump, normal), (0, THICK / 2, 0))
+    back = turned(face, np.diag([1, -1, -1]))
+    edge = np.stack([np.linspace(-size / 2, size / 2, 25), np.full(25, THICK / 2), np.full(25, size / 2)], axis=1)
+    side = strip(edge * (1, -1, 1), edge)
+    return welded(join(face, back, *(turned(side, rotation_y(90 * t)) for t in range(4))))
+
+
+def slab(low, high):
+    """An axis-parallel box."""
+    return convex([(np.eye(3)[k] * s, (high if s > 0 else low)[k] * s) for k in range(3) for s in (1, -1)])
+
+
+def window_wall(x):
+    """The wall at x with its opening, and the bars of mortar in it."""
+    w, half = COUNT * BLOCK / 2, LONG / 2
+    top = SILL + 2 * w
+    parts = [((0, -half), (SILL, half)), ((top, -half), (HIGH, half)), ((SILL, -half), (top, -w)), ((SILL, w), (top, half))]
+    faces = [quad((at, y0, z1), (at, y0, z0), (at, y1, z0), (at, y1, z1)) for (y0, z0), (y1, z1) in parts for at in (x, x - 0.15)]
+    rims = [[(SILL, -w), (SILL, w), (top, w), (top, -w)], [(0, -half), (HIGH, -half), (HIGH, half), (0, half)]]  # height and z
+    edges = [quad((x, *p), (x - 0.15, *p), (x - 0.15, *q), (x, *q)) for rim in rims for p, q in zip(rim, rim[1:] + rim[:1])]
+    wall = join(*faces, *edges)
+    middle, deep = x - 0.07, 0.85 * THICK / 2
+    lines = [k * BLOCK - w for k in range(COUNT + 1)]
+    upright_bars = [slab((middle - deep, SILL, z - JOINT / 2), (middle + deep, top, z + JOINT / 2)) for z in lines]
+    level_bars = [slab((middle - deep, SILL + w + y - JOINT / 2, -w), (middle + deep, SILL + w + y + JOINT / 2, w)) for y in lines]
+    return wall, join(*upright_bars, *level_bars)
+
+
+def checkers(size, count):
+    """The squares of a floor, of each colour, all on y = 0."""
+    step, parts = size / count, ([], [])
+    for i in range(count):
+        for j in range(count):
+            corner = np.array((i * step - size / 2, 0, (j + 1) * step - size / 2))
+            parts[(i + j) % 2].append(quad(corner, corner + (step, 0, 0), corner + (step, 0, -step), corner - (0, 0, step)))
+    return parts
+
+
+def blocks_in(x):
+    """All of one mesh, turned by quarters so that no pattern shows."""
+    block, inwards = glass_block(), np.array([[0, 1, 0], [0, 0, 1], [1, 0, 0]])
+    blocks = []
+    for row in range(COUNT):
+        for column in range(COUNT):
+            place = (x - 0.07, SILL + (row + 0.5) * BLOCK, (column + 0.5 - COUNT / 2) * BLOCK)
+            turn = inwards @ rotation_y(90 * ((row * row + 3 * column + row * column) % 4))
+            blocks.append(Node(f'block-{row + 1}-{column + 1}', place, quaternion(*turn.T), mesh=block,
+                               material=glass(1.52, ((0.7, 0.9, 0.85), 0.3))))
+    return blocks
+
+
+def vase():
+    line = [(0.001, 0.004)] + spline([(0.075, 0.004), (0.085, 0.02), (0.14, 0.16), (0.15, 0.25), (0.1, 0.38), (0.05, 0.47), (0.065, 0.55)], 5)
+    return revolve(line + [(r - 0.008, y) for r, y in line[:5:-1]], 64, crease_degrees=70)
+
+
+def glass_blocks():
+    x, half = -LONG / 2, LONG / 2
+    wall, mortar = window_wall(x)
+    light, dark = (join(*part) for part in checkers(LONG, 12))
+    white = lambert(0.76, 0.74, 0.7)
+    walls = join(quad((x, 0, -half), (half, 0, -half), (half, HIGH, -half), (x, HIGH, -half)),
+                 quad((half, 0, half), (x, 0, half), (x, HIGH, half), (half, HIGH, half)),
+                 quad((half, 0, -half), (half, 0, half), (half, HIGH, half), (half, HIGH, -half)),
+                 quad((x, HIGH, -half), (half, HIGH, -half), (half, HIGH, half), (x, HIGH, half)))
+    bench = join(slab((-0.75, 0.4, -1.6), (0.45, 0.45, -1.2)), *(slab((a, 0.001, -1.55), (a + 0.06, 0.4, -1.25)) for a in (-0.7, 0.34)))
+    return [camera((1.5, 1.45, 1.65), (-0.6, 0.85, -0.55), 58), Node('walls', mesh=walls, material=white),
+            Node('window-wall', mesh=wall, material=white),
+            Node('mortar', mesh=mortar, material=lambert(0.5, 0.5, 0.48)), Node('tiles-light', mesh=light, material=white),
+            Node('tiles-dark', mesh=dark, material=lambert(0.12, 0.16, 0.17)), Node('bench', mesh=bench, material=lambert(0.4, 0.24, 0.12)),
+            Node('vase', (-0.45, 0.451, -1.4), mesh=welded(vase()), material=lambert(0.1, 0.25, 0.5)), *blocks_in(x)]
+
+
+GALLERY = [wine_glass, pool_net, chandelier, glass_blocks]

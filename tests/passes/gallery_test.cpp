@@ -29,6 +29,7 @@ const Exhibit& exhibit(const std::string& name) {
         {"wine-glass", {}, {0.01969, 0.01471, 0.01325}, 0.02, 0.4225},
         {"chandelier", {}, {49.54, 42.09, 32.15}, 0.002, 0.930},
         {"pool-net", Sun{55, 140}, {1.6077e6, 1.8711e6, 2.1218e6}, 0.005, 0.435},
+        {"glass-blocks", Sun{38, -78}, {1.2064e5, 1.1476e5, 1.0732e5}, 0.01, 0.494},
     };
     return *std::find_if(std::begin(all), std::end(all), [&](const Exhibit& e) { return e.name == name; });
 }
@@ -114,6 +115,8 @@ TEST_CASE("a glass of red wine throws as much light on the table, as red, as wit
 }
 TEST_CASE("so does a chandelier of fifty lamps in its room") { checkFlux("chandelier"); }
 TEST_CASE("so does water on the tiles of a pool under sun and sky") { checkFlux("pool-net"); }
+TEST_CASE("so do glass blocks in a window, the room's only light") { checkFlux("glass-blocks"); }
+
 TEST_CASE("each of the chandelier's fifty lamps has its caustic, as sure as the surest within a factor of three") {
     const PhotonMap& map = mapOf(exhibit("chandelier"));
     std::map<std::string, std::array<double, 2>> moments;  // of each lamp's photons: sums of power and its square
@@ -150,3 +153,7 @@ TEST_CASE("so is the ceiling over the chandelier") {
 }
 
 TEST_CASE("so are the borders of the pool") { checkPicture("pool-net", {{"L.*DE", 32, {4785, 4094, 3895}, 0.008}}); }
+
+TEST_CASE("so is the room behind glass blocks") {
+    checkPicture("glass-blocks", {{"LS+DE", 32, {607.6, 568.5, 476.7}, 0.05}, {"L.*DE", 32, {1168, 1070, 868}, 0.05}});
+}
