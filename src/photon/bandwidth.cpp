@@ -16,6 +16,8 @@ constexpr double kBalanceTolerance = 3;
 // an edge. A few of them are no chance: a block's density has an error of a quarter.
 constexpr float kDense = 4;
 constexpr uint32_t kFewDense = 3;
+// Cosine between the sides on which photons landed, below which they lie on the two sides of one sheet.
+constexpr float kOtherSide = -0.9F;
 
 // Moments of the power of photons.
 struct Moments {
@@ -51,6 +53,12 @@ std::array<float, kSignals> signalsOf(const PhotonPayload& p) {
         const Rgb power = rgbPower(p);
         return {power.x, power.y, power.z};
     }
+}
+
+// To the side on which it landed.
+Vec3 sideNormal(const PhotonPayload& p) {
+    const Vec3 ng = unpackNormal(p.normal);
+    return (p.flags & kLandedOnFront) != 0 ? ng : -ng;
 }
 
 // The photons between one radius and the next smaller one.
@@ -184,8 +192,17 @@ class RadiusSearch {
     bool isDense(const PhotonTreeView& tree, uint32_t block) {
         if (block == lastBlock_) return lastIsDense_;
         lastBlock_ = block;
-        const float area = boxArea(tree, block);
-        return lastIsDense_ = kBlockSize * kPi * r0_ * r0_ > kDense * static_cast<float>(rule_.leastCount) * area;
+        // So many photons in the block's area would be as dense.
+        const float many = kDense * static_cast<float>(rule_.leastCount) * boxArea(tree, block) / (kPi * r0_ * r0_);
+        return lastIsDense_ = kBlockSize > many && static_cast<float>(notBehind(tree, block)) > many;
+    }
+    // Photons of a block, less those on the back of a sheet without thickness.
+    uint32_t notBehind(const PhotonTreeView& tree, uint32_t block) const {
+        const uint64_t first = uint64_t{block} * kBlockSize, end = std::min(first + kBlockSize, tree.count);
+        uint32_t count = 0;
+        for (uint64_t i = first; i < end; ++i)
+            if (glm::dot(sideNormal(tree.payload[i]), query_.sideNormal) > kOtherSide) ++count;
+        return count;
     }
 
     const PhotonSource& source_;
@@ -208,7 +225,7 @@ DensityQuery queryAt(const PhotonSource& source, uint32_t photon) {
     DensityQuery query;
     query.point.position = photons.position(photon);
     query.point.ng = query.point.ns = unpackNormal(at.normal);
-    query.sideNormal = (at.flags & kLandedOnFront) != 0 ? query.point.ng : -query.point.ng;
+    query.sideNormal = sideNormal(at);
     query.medium = at.medium;
     query.maxRadius = source.maxRadius;
     query.minRadius = leastRadius(query.point.position);

@@ -33,6 +33,9 @@ constexpr size_t kNeighbours = 4;
 // they are asked by area, and runs of little light are large: that takes away about one (measured: 1.2 of 500).
 constexpr float kOwnWeight = 0.5F;
 
+// Records of a run: of its middle photon, and of one on the other side, if the surface is a sheet lit from both.
+constexpr size_t kSides = 2;
+
 // Uniform on the unit disc.
 Vec2 hashedDiscPoint(Vec3 p) {
     const uint64_t h = mix64(mix64(std::bit_cast<uint32_t>(p.x) | uint64_t{std::bit_cast<uint32_t>(p.y)} << 32) +
@@ -55,10 +58,11 @@ IrradianceCache::IrradianceCache(const PhotonSource& source, const IrradianceRul
         level.photonsPerRecord = photonsPerRecord;
         level.rule = rule.bandwidth;
         level.rule.mostCount = std::min(level.rule.mostCount, mostCountOf(photonsPerRecord));
-        level.states = std::vector<std::atomic<uint8_t>>(runs);
-        level.bandwidths = std::make_unique_for_overwrite<Bandwidth[]>(runs);
-        level.irradiance = std::make_unique_for_overwrite<Rgb[]>(runs * (source.groupCount + 1));
-        level.variances = std::make_unique_for_overwrite<Rgb[]>(runs);
+        const size_t slots = kSides * runs;
+        level.states = std::vector<std::atomic<uint8_t>>(slots);
+        level.bandwidths = std::make_unique_for_overwrite<Bandwidth[]>(slots);
+        level.irradiance = std::make_unique_for_overwrite<Rgb[]>(slots * (source.groupCount + 1));
+        level.variances = std::make_unique_for_overwrite<Rgb[]>(slots);
     }
 }
 
@@ -84,17 +88,17 @@ void IrradianceCache::make(Record& record, const BandwidthRule& rule, std::span<
     record.variance *= square(scale);
 }
 
-void IrradianceCache::recordOf(Level& level, size_t run, Record& record, std::vector<Rgb>& spare,
+void IrradianceCache::recordOf(Level& level, size_t slot, Record& record, std::vector<Rgb>& spare,
                                BandwidthScratch& scratch) {
     const size_t groups = source_.groupCount + 1;  // and their sum
-    std::atomic<uint8_t>& state = level.states[run];
-    const std::span<Rgb> kept(&level.irradiance[run * groups], groups);
+    std::atomic<uint8_t>& state = level.states[slot];
+    const std::span<Rgb> kept(&level.irradiance[slot * groups], groups);
     uint8_t expected = kUnknown;
     const bool known = state.load(std::memory_order_acquire) == kKnown;
     if (!known && state.compare_exchange_strong(expected, kInTheMaking, std::memory_order_acquire)) {
         make(record, level.rule, kept, scratch);
-        level.bandwidths[run] = record.bandwidth;
-        level.variances[run] = record.variance;
+        level.bandwidths[slot] = record.bandwidth;
+        level.variances[slot] = record.variance;
         state.store(kKnown, std::memory_order_release);
     } else if (!known && expected == kInTheMaking) {
         // Another thread is at it; waiting would cost as much as making it here.
@@ -103,8 +107,8 @@ void IrradianceCache::recordOf(Level& level, size_t run, Record& record, std::ve
         record.irradiance = spare;
         return;
     }
-    record.bandwidth = level.bandwidths[run];
-    record.variance = level.variances[run];
+    record.bandwidth = level.bandwidths[slot];
+    record.variance = level.variances[slot];
     record.irradiance = kept;
 }
 
@@ -117,6 +121,12 @@ bool IrradianceCache::sameSurface(const DensityQuery& query, uint32_t photon, Ba
     return scratch.surface.whole() || !scratch.surface.hides(there.point.position);
 }
 
+// Of [photon, end), or end: the first one that landed on the side which faces away from `side`.
+uint32_t IrradianceCache::firstOnOtherSide(uint32_t photon, uint32_t end, Vec3 side) const {
+    while (photon < end && !(glm::dot(queryAt(source_, photon).sideNormal, side) < -kSameDirection)) ++photon;
+    return photon;
+}
+
 // Whether the run's record stands for the query's point. If not, it is the record all the same if it is of the query's
 // surface.
 bool IrradianceCache::answers(Level& level, size_t run, const DensityQuery& query, Record& record,
@@ -124,11 +134,18 @@ bool IrradianceCache::answers(Level& level, size_t run, const DensityQuery& quer
     const uint64_t first = run * level.photonsPerRecord;
     const uint64_t end = std::min(first + level.photonsPerRecord, photons_.count);
     if (first >= end) return false;
-    const auto photon = static_cast<uint32_t>((first + end) / 2);
+    auto photon = static_cast<uint32_t>((first + end) / 2);
+    size_t slot = kSides * run;
+    const Vec3 side = queryAt(source_, photon).sideNormal;
+    if (glm::dot(side, query.sideNormal) < -kSameDirection) {
+        photon = firstOnOtherSide(photon, static_cast<uint32_t>(end), side);
+        if (photon == end) return false;
+        ++slot;
+    }
     if (!sameSurface(query, photon, scratch)) return false;
     record.photon = photon;
     record.photonsPerRecord = level.photonsPerRecord;
-    recordOf(level, run, record, spare, scratch);
+    recordOf(level, slot, record, spare, scratch);
     return record.bandwidth.count >= kRunsInDisc * level.photonsPerRecord &&
            glm::length(query.point.position - photons_.position(photon)) < kNear * record.bandwidth.radius;
 }

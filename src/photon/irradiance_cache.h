@@ -44,13 +44,14 @@ class IrradianceCache {
         std::span<const Rgb> irradiance;
         Rgb variance{0};
     };
-    // The records for runs of one length.
+    // The records for runs of one length, two for each run: a sheet without thickness may be lit from both sides, and
+    // then photons of both lie in the same runs.
     struct Level {
         uint32_t photonsPerRecord = 0;
         BandwidthRule rule;
         std::vector<std::atomic<uint8_t>> states;
         std::unique_ptr<Bandwidth[]> bandwidths;
-        std::unique_ptr<Rgb[]> irradiance;  // of run i and group g: [i * (groups + 1) + g]
+        std::unique_ptr<Rgb[]> irradiance;  // of slot i and group g: [i * (groups + 1) + g]
         std::unique_ptr<Rgb[]> variances;   // of the sum over groups
     };
     bool answers(Level& level, size_t run, const DensityQuery& query, Record& record, std::vector<Rgb>& spare,
@@ -59,7 +60,8 @@ class IrradianceCache {
     bool nearest(const DensityQuery& query, Vec3 p, Record& record, BandwidthScratch& scratch);
     bool sameSurface(const DensityQuery& query, uint32_t photon, BandwidthScratch& scratch) const;
     // Into `spare` where another thread is just making it.
-    void recordOf(Level& level, size_t run, Record& record, std::vector<Rgb>& spare, BandwidthScratch& scratch);
+    uint32_t firstOnOtherSide(uint32_t photon, uint32_t end, Vec3 side) const;
+    void recordOf(Level& level, size_t slot, Record& record, std::vector<Rgb>& spare, BandwidthScratch& scratch);
     // Fills the record of its photon, all but the span: what that refers to is `irradiance`.
     void make(Record& record, const BandwidthRule& rule, std::span<Rgb> irradiance, BandwidthScratch& scratch) const;
 

@@ -108,6 +108,30 @@ TEST_CASE("where light is even almost every point has an answer") {
     CHECK(without < 220);  // 347 if each block answers for itself alone
 }
 
+TEST_CASE("light on the back of a sheet takes hardly any answers away, and changes none") {
+    int known = 0, all = 0;
+    test::Mean ratio;
+    for (uint32_t seed = 1; seed <= 20; ++seed) {
+        const Square square(300 + seed, 5000, 1, 5000);
+        IrradianceCache cache(square.source(), kRule);
+        BandwidthScratch scratch;
+        Random random(seed);
+        test::Mean here;
+        for (int i = 0; i < 1000; ++i) {
+            const Vec3 p(random.between(-0.5F, 0.5F), random.between(-0.5F, 0.5F), 0);
+            const CachedLight light = cache.at(queryFrom(p), true, scratch);
+            if (!light.irradiance.empty()) here.add(static_cast<double>(light.irradiance.back().y) / 10'000);
+            known += light.irradiance.empty() ? 0 : 1;
+            ++all;
+        }
+        ratio.add(here.value());
+    }
+    const int without = all - known;
+    MESSAGE(without, " of ", all, " without; ratio ", ratio.value(), " +- ", ratio.standardError());
+    CHECK(without < 600);
+    CHECK(std::fabs(ratio.value() - 1) < 0.003 + 3 * ratio.standardError());
+}
+
 TEST_CASE("beside an edge the cached irradiance is that of its own side") {
     // Density 2000 and 100000 photons a m2. 3 cm from the edge even discs of 50 photons of the bright side end.
     double darkMost = 0;

@@ -14,17 +14,24 @@ struct Square {
     SurfaceExtent extent;
     std::vector<uint16_t> groups;
 
-    Square(uint32_t seed, float density, float contrast)
-        : tree(make(seed, density, contrast)), index(KdIndex(view(tree))) {
+    // behind: photons a m2 that landed on the back.
+    Square(uint32_t seed, float density, float contrast, float behind = 0)
+        : tree(make(seed, density, contrast, behind)), index(KdIndex(view(tree))) {
         for (size_t i = 0; i < tree.count; ++i) groups.push_back(tree.payload[i].light);
     }
-    static PhotonTree make(uint32_t seed, float density, float contrast) {
+    static PhotonTree make(uint32_t seed, float density, float contrast, float behind) {
         Random random(seed);
         std::vector<Photon> photons;
         for (const float side : {-1.0F, 1.0F})
             for (uint32_t n = random.poisson(2.0 * density * (side > 0 ? contrast : 1)); n-- > 0;) {
                 Photon p = photonAt({side * random.uniform(), random.between(-1, 1), 0}, random.bits());
                 p.light = static_cast<uint16_t>(photons.size() % 2);
+                photons.push_back(p);
+            }
+        if (behind > 0)
+            for (uint32_t n = random.poisson(4.0 * behind); n-- > 0;) {
+                Photon p = photonAt({random.between(-1, 1), random.between(-1, 1), 0}, random.bits());
+                p.direction = -p.direction;
                 photons.push_back(p);
             }
         return treeOf(photons);
