@@ -46,7 +46,10 @@ std::string show(const Watts& w) {
 
 const char* kindOf(const Light& light) {
     if (std::holds_alternative<AreaLight>(light.shape)) return "area";
-    if (const auto* p = std::get_if<PointLight>(&light.shape)) return p->profile != nullptr ? "measured" : p->isSpot() ? "spot" : "point";
+    if (const auto* p = std::get_if<PointLight>(&light.shape)) {
+        if (p->profile != nullptr) return "measured";
+        return p->isSpot() ? "spot" : "point";
+    }
     if (const auto* i = std::get_if<InfiniteLight>(&light.shape)) return i->surrounds() ? "environment" : "sun";
     return "directional";
 }
