@@ -14,7 +14,7 @@ constexpr float kMaxShadingWeight = 10;
 // Where the normals agree so closely a Lambertian surface needs no photon's direction.
 constexpr float kFlat = 0.999999F;
 
-// A shading normal further than this (cosine) from the geometric one weighs each photon differently.
+// Where a shading normal is further than this (cosine) from the geometric one, light may come from behind it.
 constexpr float kBentNormal = 0.998F;
 
 // Area on which the class's photons lie: that of the objects on which any landed.
@@ -190,7 +190,7 @@ bool ClassGather::known(const PhotonGatherQuery& query, DensityQuery& density, c
                       glm::dot(query.point.ng, query.point.ns) > kBentNormal;
     const CachedLight light = cache_->at(density, even, scratch.bandwidth);
     if (!light.irradiance.empty()) {
-        const Rgb albedo = diffuse->albedo * kInvPi;
+        const Rgb albedo = diffuse->albedo * (kInvPi * light.shading);
         for (size_t g = 0; g < groups_.size(); ++g)
             if (!isBlack(light.irradiance[g]))
                 scratch.light.paths.push_back({static_cast<uint16_t>(g), albedo * light.irradiance[g]});

@@ -36,6 +36,17 @@ constexpr float kOwnWeight = 0.5F;
 // Records of a run: of its middle photon, and of one on the other side, if the surface is a sheet lit from both.
 constexpr size_t kSides = 2;
 
+// Grazing light on a bent normal may weigh so much more, as in a gather.
+constexpr float kMostShading = 10;
+
+// Where a photon came from, over its cosine: bounded along the surface.
+Vec3 overCosine(const PhotonPayload& p, Vec3 side) {
+    const Vec3 direction = unpackDirection(p.direction);
+    const float cosine = glm::dot(direction, side);
+    const Vec3 along = direction - cosine * side;
+    return side + along / std::max(cosine, glm::length(along) / kMostShading);
+}
+
 // Uniform on the unit disc.
 Vec2 hashedDiscPoint(Vec3 p) {
     const uint64_t h = mix64(mix64(std::bit_cast<uint32_t>(p.x) | uint64_t{std::bit_cast<uint32_t>(p.y)} << 32) +
@@ -63,6 +74,7 @@ IrradianceCache::IrradianceCache(const PhotonSource& source, const IrradianceRul
         level.bandwidths = std::make_unique_for_overwrite<Bandwidth[]>(slots);
         level.irradiance = std::make_unique_for_overwrite<Rgb[]>(slots * (source.groupCount + 1));
         level.variances = std::make_unique_for_overwrite<Rgb[]>(slots);
+        level.arriving = std::make_unique_for_overwrite<Vec3[]>(slots);
     }
 }
 
@@ -71,17 +83,22 @@ void IrradianceCache::make(Record& record, const BandwidthRule& rule, std::span<
     record.bandwidth = consistentBandwidth(source_, record.photon, rule, scratch);
     std::fill(irradiance.begin(), irradiance.end(), Rgb(0));
     record.variance = Rgb(0);
+    record.arriving = Vec3(0);
     if (record.bandwidth.count < smoothCount_) return;
     const float radiusSquared = square(record.bandwidth.radius);
+    const Vec3 side = queryAt(source_, record.photon).sideNormal;
     for (const DensityScratch::Candidate& c : scratch.density.accepted) {
         const uint16_t group = source_.groups[c.index];
         if (group >= source_.groupCount || !(c.entrySquared < radiusSquared)) continue;
         if (!scratch.surface.whole() && scratch.surface.hides(photons_.position(c.index))) continue;
-        const float weight = c.index == record.photon ? kOwnWeight : 1;
-        const Rgb e = rgbPower(photons_.payload[c.index]) * (weight * epanechnikov(c.distanceSquared, radiusSquared));
+        const PhotonPayload& p = photons_.payload[c.index];
+        const float weight =
+            (c.index == record.photon ? kOwnWeight : 1) * epanechnikov(c.distanceSquared, radiusSquared);
+        const Rgb e = rgbPower(p) * weight;
         irradiance[group] += e;
         irradiance.back() += e;
         record.variance += e * e;
+        record.arriving += maxComponent(unpackPower(p.power)) * weight * overCosine(p, side);
     }
     const auto scale = static_cast<float>(source_.perPath) / scratch.surface.share(record.bandwidth.radius);
     for (Rgb& e : irradiance) e *= scale;
@@ -99,6 +116,7 @@ void IrradianceCache::recordOf(Level& level, size_t slot, Record& record, std::v
         make(record, level.rule, kept, scratch);
         level.bandwidths[slot] = record.bandwidth;
         level.variances[slot] = record.variance;
+        level.arriving[slot] = record.arriving;
         state.store(kKnown, std::memory_order_release);
     } else if (!known && expected == kInTheMaking) {
         // Another thread is at it; waiting would cost as much as making it here.
@@ -109,6 +127,7 @@ void IrradianceCache::recordOf(Level& level, size_t slot, Record& record, std::v
     }
     record.bandwidth = level.bandwidths[slot];
     record.variance = level.variances[slot];
+    record.arriving = level.arriving[slot];
     record.irradiance = kept;
 }
 
@@ -189,6 +208,11 @@ CachedLight IrradianceCache::at(const DensityQuery& query, bool wantIrradiance, 
         light.irradiance = other.irradiance;
         light.variance = other.variance;
         light.radius = other.bandwidth.radius;
+        if (query.point.ns != query.point.ng) {
+            const Vec3 ns = glm::dot(query.point.ns, query.sideNormal) > 0 ? query.point.ns : -query.point.ns;
+            const float even = glm::dot(query.sideNormal, other.arriving);
+            if (even > 0) light.shading = std::clamp(glm::dot(ns, other.arriving) / even, 0.0F, kMostShading);
+        }
     }
     return light;
 }

@@ -23,6 +23,8 @@ struct CachedLight {
     // (W/m2)^2, of their sum, as the photons' number makes it; and the radius (m) over which it is a mean.
     Rgb variance{0};
     float radius = 0;
+    // What the query's shading normal makes of the irradiance: mean of |wi.Ns| / |wi.Ng| (Veach 1997, section 5.3).
+    float shading = 1;
 };
 
 // Records at photons in the middle of runs of the tree's blocks: few where light is smooth, one in each block where it
@@ -43,6 +45,7 @@ class IrradianceCache {
         Bandwidth bandwidth;
         std::span<const Rgb> irradiance;
         Rgb variance{0};
+        Vec3 arriving{0};  // sum of power times the direction it came from over its cosine, up to a factor
     };
     // The records for runs of one length, two for each run: a sheet without thickness may be lit from both sides, and
     // then photons of both lie in the same runs.
@@ -53,6 +56,7 @@ class IrradianceCache {
         std::unique_ptr<Bandwidth[]> bandwidths;
         std::unique_ptr<Rgb[]> irradiance;  // of slot i and group g: [i * (groups + 1) + g]
         std::unique_ptr<Rgb[]> variances;   // of the sum over groups
+        std::unique_ptr<Vec3[]> arriving;
     };
     bool answers(Level& level, size_t run, const DensityQuery& query, Record& record, std::vector<Rgb>& spare,
                  BandwidthScratch& scratch);

@@ -90,6 +90,28 @@ TEST_CASE("where many photons are in a disc the cached irradiance is the light's
     CHECK(std::fabs(ratio.value() - 1) < 0.001 + 3 * ratio.standardError());
 }
 
+TEST_CASE("a bent shading normal sees as much more of slanting light as it leans towards it") {
+    // The square's photons come from wherever photonAt() has them come from; here from 60 degrees towards +x.
+    Square square(7, 5000, 1);
+    const Vec3 from(std::sqrt(0.75F), 0, 0.5F);
+    for (PhotonPayload& p : square.tree.payload) p.direction = packDirection(from);
+    const PhotonSource source = square.source();
+    IrradianceCache cache(source, kRule);
+    BandwidthScratch scratch;
+    int known = 0;
+    for (const float lean : {-0.05F, 0.0F, 0.05F})
+        for (const float sign : {1.0F, -1.0F}) {
+            DensityQuery query = queryFrom({0.1F, 0.2F, 0});
+            query.point.ns = sign * Vec3(std::sin(lean), 0, std::cos(lean));
+            const CachedLight light = cache.at(query, true, scratch);
+            if (light.irradiance.empty()) continue;
+            ++known;
+            CHECK(light.shading ==
+                  doctest::Approx(glm::dot(from, Vec3(std::sin(lean), 0, std::cos(lean))) / 0.5).epsilon(2e-3));
+        }
+    CHECK(known == 6);
+}
+
 TEST_CASE("where light is even almost every point has an answer") {
     int known = 0, all = 0;
     for (uint32_t seed = 1; seed <= 20; ++seed) {
