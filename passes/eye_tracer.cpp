@@ -227,7 +227,8 @@ void EyeTracer::addPhotons(const Vertex& v, const EyePath& path, EyeScratch& scr
     const bool glossyGathers = glossy && !glossyIsWide && path.walk.gathers(VertexClass::Glossy);
     if (!diffuse && !glossyIsWide && !glossyGathers) return;
     PhotonGatherQuery query;
-    query.point = {v.surface.position, v.surface.ng, v.surface.ns, path.metDiffuse ? 0 : path.width};
+    query.point = {v.surface.position, v.surface.ng, v.surface.ns, path.metDiffuse ? 0 : path.width,
+                   scene_.curvature(v.surface)};
     query.sideNormal = v.sideNormal();
     query.medium = v.medium;
     query.glossyOnly = !diffuse && !glossyIsWide;

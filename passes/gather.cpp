@@ -64,6 +64,13 @@ float radiusAtMost(const PhotonTreeView& tree, const AnyIndex& index) {
     return kBeyond * *most;
 }
 
+// Further than this the surface turns away from its tangent plane, and a disc would count what it does not reach: of a
+// thin tube most.
+float reachOnSurface(const SurfacePoint& p) {
+    constexpr float kShare = 0.4F;  // of the radius of curvature (kPlaneThickness)
+    return p.curvature > 0 ? kShare / p.curvature : kInfinity;
+}
+
 // A pilot radius may exceed that of the mean density, where photons are sparse.
 constexpr float kPilotRadius = 4;
 
@@ -162,7 +169,7 @@ DensityQuery ClassGather::densityQuery(const PhotonGatherQuery& query, GatherScr
     density.minCount = rule_.minCount;
     density.requiredFlags = query.glossyOnly ? kGlossyGather : 0;
     const float least = leastRadius(query.point.position);
-    density.maxRadius = std::max(maxRadius_, least);
+    density.maxRadius = std::max(std::min(maxRadius_, reachOnSurface(query.point)), least);
     if (progressive_.pilot != nullptr) {
         const float r1 =
             distanceToKth(*progressive_.pilot, query.point.position, progressive_.k, maxRadius_, scratch.pilot);
@@ -189,7 +196,8 @@ bool ClassGather::known(const PhotonGatherQuery& query, DensityQuery& density, c
     const bool even = diffuse != nullptr && query.wavelength == kAllWavelengths &&
                       glm::dot(query.point.ng, query.point.ns) > kBentNormal;
     const CachedLight light = cache_->at(density, even, scratch.bandwidth);
-    if (!light.irradiance.empty()) {
+    const float reach = reachOnSurface(query.point);
+    if (!light.irradiance.empty() && light.radius <= reach) {
         const Rgb albedo = diffuse->albedo * (kInvPi * light.shading);
         for (size_t g = 0; g < groups_.size(); ++g)
             if (!isBlack(light.irradiance[g]))
@@ -198,7 +206,7 @@ bool ClassGather::known(const PhotonGatherQuery& query, DensityQuery& density, c
         scratch.light.variance = albedo * albedo * light.variance * sharedVariance(query, wo, light.radius);
         return true;
     }
-    density.minRadius = std::max(density.minRadius, light.bandwidth.radius);
+    density.minRadius = std::max(density.minRadius, std::min(light.bandwidth.radius, reach));
     return false;
 }
 

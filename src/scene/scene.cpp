@@ -160,6 +160,20 @@ Vec3 Scene::vertexNormal(const Surface& s) const {
     return length > 0 && glm::dot(n, s.ng) > 0 ? n / length : s.ng;
 }
 
+float Scene::curvature(const Surface& s) const {
+    const Mesh& mesh = description_.meshes[s.mesh];
+    if (mesh.normals.empty()) return 0;
+    const Triangle& t = mesh.triangles[s.triangle];
+    float largest = 0;
+    for (size_t i = 0; i < 3; ++i) {
+        const uint32_t a = t[i], b = t[(i + 1) % 3];
+        const Vec3 edge = mesh.positions[b] - mesh.positions[a], turn = mesh.normals[b] - mesh.normals[a];
+        const float edge2 = lengthSquared(edge);
+        if (edge2 > 0) largest = std::max(largest, lengthSquared(turn) / edge2);
+    }
+    return std::sqrt(largest);
+}
+
 // A normal bent by a normal texture.
 Vec3 Scene::mappedNormal(const Surface& s, Vec3 normal, const TextureRef& ref, float scale) const {
     const Mesh& mesh = description_.meshes[s.mesh];

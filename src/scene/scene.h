@@ -61,6 +61,8 @@ class Scene {
     const Accel& accel() const { return accel_; }
 
     Surface surface(const Hit& hit) const;
+    // 1/m: the largest along the edges of the triangle, as its vertices' normals tell.
+    float curvature(const Surface& s) const;
     const Material& material(const Surface& s) const {
         return description_.materials[description_.meshes[s.mesh].material];
     }
