@@ -39,6 +39,8 @@ constexpr size_t kSides = 2;
 // Grazing light on a bent normal may weigh so much more, as in a gather.
 constexpr float kMostShading = 10;
 
+constexpr uint32_t kDirections = 64;
+
 // Where a photon came from, over its cosine: bounded along the surface.
 Vec3 overCosine(const PhotonPayload& p, Vec3 side) {
     const Vec3 direction = unpackDirection(p.direction);
@@ -87,6 +89,9 @@ void IrradianceCache::make(Record& record, const BandwidthRule& rule, std::span<
     if (record.bandwidth.count < smoothCount_) return;
     const float radiusSquared = square(record.bandwidth.radius);
     const Vec3 side = queryAt(source_, record.photon).sideNormal;
+    // Of where the light came from some photons tell enough.
+    const uint32_t each = 1 + record.bandwidth.count / kDirections;
+    uint32_t number = 0;
     for (const DensityScratch::Candidate& c : scratch.density.accepted) {
         const uint16_t group = source_.groups[c.index];
         if (group >= source_.groupCount || !(c.entrySquared < radiusSquared)) continue;
@@ -98,7 +103,7 @@ void IrradianceCache::make(Record& record, const BandwidthRule& rule, std::span<
         irradiance[group] += e;
         irradiance.back() += e;
         record.variance += e * e;
-        record.arriving += maxComponent(unpackPower(p.power)) * weight * overCosine(p, side);
+        if (number++ % each == 0) record.arriving += maxComponent(unpackPower(p.power)) * weight * overCosine(p, side);
     }
     const auto scale = static_cast<float>(source_.perPath) / scratch.surface.share(record.bandwidth.radius);
     for (Rgb& e : irradiance) e *= scale;
