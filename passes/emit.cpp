@@ -54,11 +54,7 @@ void Emission::trace(uint64_t next, uint64_t count, RunContext& run) {
         ranges_.push_back({next, next + count});
 }
 
-PhotonMap Emission::finish(uint64_t total, RunContext& run) { return build(std::move(photons_), total, run); }
-
-PhotonMap Emission::mapSoFar(RunContext& run) const { return build(Photons(photons_), traced(), run); }
-
-PhotonMap Emission::build(Photons&& photons, uint64_t total, RunContext& run) const {
+PhotonMap Emission::finish(uint64_t total, RunContext& run) {
     PhotonMap map;
     MapHeader& h = map.header;
     h.sceneHash = scene_.hash();
@@ -73,7 +69,7 @@ PhotonMap Emission::build(Photons&& photons, uint64_t total, RunContext& run) co
     h.ledger = ledger_;
     for (const PhotonClass c : {PhotonClass::Caustic, PhotonClass::Indirect, PhotonClass::Direct})
         if (holds(settings_.store, c))
-            map.setTree(c, buildPhotonTree(std::move(photons[static_cast<size_t>(c)]), run.pool));
+            map.setTree(c, buildPhotonTree(std::move(photons_[static_cast<size_t>(c)]), run.pool));
     return map;
 }
 

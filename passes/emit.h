@@ -38,24 +38,19 @@ class Emission {
     void trace(uint64_t next, uint64_t count, RunContext& run);
     // Builds the trees and fills the header. The photons are consumed. `total` is the whole emission's number of paths.
     PhotonMap finish(uint64_t total, RunContext& run);
-    // As if the emission ended here; it may go on.
-    PhotonMap mapSoFar(RunContext& run) const;
 
     uint64_t traced() const { return ranges_.empty() ? 0 : ranges_.back().end - ranges_.front().begin; }
     uint64_t stored(PhotonClass c) const { return photons_[static_cast<size_t>(c)].size(); }
     const Ledger& ledger() const { return ledger_; }
 
   private:
-    using Photons = std::array<std::vector<PackedPhoton>, kPhotonClasses>;
-    PhotonMap build(Photons&& photons, uint64_t total, RunContext& run) const;
-
     const Scene& scene_;
     EmitSettings settings_;
     uint64_t seed_;
     EmissionSampler sources_;
     DiffuseAim diffuseAim_;
     LightTracerInput tracer_;
-    Photons photons_;
+    std::array<std::vector<PackedPhoton>, kPhotonClasses> photons_;
     Ledger ledger_;
     std::vector<IndexRange> ranges_;
 };

@@ -69,37 +69,30 @@ SourcedMap mapByCount(const Scene& scene, const MapRequest& request, RunContext&
     return out;
 }
 
-PhotonMap mapByTime(const Scene& scene, const EmitSettings& emit, const Clock& clock, const FindMapSeconds& findSeconds,
-                    RunContext& run) {
-    // A photon: tree and layout, and its share of the records of irradiance, which the first sample makes (0.15 to 0.5
-    // of a microsecond, where most of the map is seen).
-    constexpr double kBuildSeconds = 0.5e-6, kRecordSeconds = 0.4e-6;
+PhotonMap mapByTime(const Scene& scene, const EmitSettings& emit, const Clock& clock, double seconds, RunContext& run) {
+    constexpr double kBuildSeconds = 0.5e-6;  // a photon: tree and layout
     Emission emission(scene, emit, run);
-    uint64_t traced = 0;
-    double seconds = 0;  // that tracing took
-    const auto trace = [&](uint64_t paths) {
+    const double start = clock.used();
+    uint64_t next = 0;
+    {
         const PhaseTimer timer(run, "emit");
-        const double start = clock.used();
-        emission.trace(traced, paths, run);
-        traced += paths;
-        seconds += clock.used() - start;
-    };
-    trace(kFirstRound);
-    const double allowed = findSeconds(emission.mapSoFar(run), seconds);
-    const double limit = allowed + clock.used();
-    while (!run.interrupted()) {
-        const uint64_t stored = emission.stored(PhotonClass::Caustic) + emission.stored(PhotonClass::Indirect);
-        // Where nothing arrives, more of it will not help.
-        if (stored == 0 && traced >= 4 * kFirstRound) break;
-        const double later = (kBuildSeconds + kRecordSeconds) * static_cast<double>(stored);
-        const double perPath = (seconds + later) / static_cast<double>(traced);
-        const double affordable = (limit - clock.used() - later) / perPath;
-        if (affordable < static_cast<double>(kFirstRound) / 4) break;
-        run.progress("emit", static_cast<double>(traced) / (static_cast<double>(traced) + affordable));
-        trace(static_cast<uint64_t>(std::min(affordable, 4.0 * static_cast<double>(traced))));
+        uint64_t round = kFirstRound;
+        while (!run.interrupted()) {
+            emission.trace(next, round, run);
+            next += round;
+            const double used = clock.used() - start;
+            run.progress("emit", used / seconds);
+            const uint64_t stored = emission.stored(PhotonClass::Caustic) + emission.stored(PhotonClass::Indirect);
+            // Where nothing arrives, more of it will not help.
+            if (stored == 0 && next >= 4 * kFirstRound) break;
+            const double perPath = (used + kBuildSeconds * static_cast<double>(stored)) / static_cast<double>(next);
+            const double affordable = seconds / perPath - static_cast<double>(next);
+            if (affordable < static_cast<double>(kFirstRound) / 4) break;
+            round = static_cast<uint64_t>(std::min(affordable, 4.0 * static_cast<double>(next)));
+        }
     }
     const PhaseTimer timer(run, "build");
-    return emission.finish(traced, run);
+    return emission.finish(next, run);
 }
 
 }  // namespace lsde

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <optional>
 
 #include "passes/clock.h"
@@ -27,12 +26,7 @@ struct SourcedMap {
 // A map of a number of light paths that is known beforehand. Throws Error if the file's scene is another.
 SourcedMap mapByCount(const Scene& scene, const MapRequest& request, RunContext& run);
 
-// Seconds that a map may cost from now on, found out with a first one and what that took.
-using FindMapSeconds = std::function<double(const PhotonMap& first, double firstSeconds)>;
-
-// A map of as many light paths as the seconds allow: their emission, the tree, and what the camera pass spends once on
-// each photon.
-PhotonMap mapByTime(const Scene& scene, const EmitSettings& emit, const Clock& clock, const FindMapSeconds& findSeconds,
-                    RunContext& run);
+// A map for the seconds given, of emission and tree together.
+PhotonMap mapByTime(const Scene& scene, const EmitSettings& emit, const Clock& clock, double seconds, RunContext& run);
 
 }  // namespace lsde

@@ -11,7 +11,6 @@
 #include "passes/map_source.h"
 #include "passes/picture.h"
 #include "passes/scene_source.h"
-#include "passes/time_balance.h"
 #include "scene/creases.h"
 
 namespace lsde {
@@ -19,6 +18,9 @@ namespace lsde {
 namespace {
 
 constexpr double kDefaultSamples = 64;
+// Of a time limit, where there are caustics: what the pixels can spare, within bounds.
+constexpr double kLeastEmissionShare = 0.33, kMostEmissionShare = 0.5;
+constexpr double kPixelSeconds = 6e-5;  // for half a dozen samples, roughly, of a pixel that sees a surface
 constexpr uint32_t kPilotRadiusPhotons = 50;
 
 // What ends the camera pass.
@@ -169,28 +171,26 @@ class Render {
         return r;
     }
 
-    // What a map may cost of the seconds that there are.
-    double mapSeconds(const PhotonMap& first, double firstSeconds, double seconds) {
-        constexpr double kPixelsPerSecond = 400;
-        const PhaseTimer timer(run_, "camera pilot");
+    double emissionShare() const {
         double pixels = 0;
-        for (const Camera& c : cameras_) pixels += static_cast<double>(c.filmWidth()) * c.filmHeight();
-        const PhotonGather gather(gatherInput(first), gatherSettings(), run_);
-        FirstLook look = lookAtTiles(
-            camera(), std::min(1.0, kPixelsPerSecond * seconds / pixels),
-            [&](const Camera& c) {
-                return method_.make({scene_, c, layers_, selected_, &gather, run_.seed});
-            },
-            clock_, run_);
-        look.sampleSeconds *= pixels / (static_cast<double>(camera().filmWidth()) * camera().filmHeight());
-        return photonSeconds(look, firstSeconds, seconds);
+        for (const Camera& c : cameras_)
+            pixels += filledShare(c) * static_cast<double>(c.filmWidth()) * static_cast<double>(c.filmHeight());
+        return std::clamp(1 - kPixelSeconds * pixels / clock_.limit(), kLeastEmissionShare, kMostEmissionShare);
     }
 
-    // A map for a slice of the time, in seconds, of which the camera has the rest.
-    PhotonMap mapInSlice(const EmitSettings& emit, double slice) {
-        return mapByTime(
-            scene_, emit, clock_,
-            [&](const PhotonMap& first, double seconds) { return mapSeconds(first, seconds, slice); }, run_);
+    // Of the picture: where there is anything to see.
+    double filledShare(const Camera& camera) const {
+        constexpr int kSide = 64;
+        int hits = 0;
+        for (int y = 0; y < kSide; ++y)
+            for (int x = 0; x < kSide; ++x) {
+                const Vec2 at((static_cast<float>(x) + 0.5F) / kSide, (static_cast<float>(y) + 0.5F) / kSide);
+                const Vec2 pixel =
+                    Vec2(camera.filmX(), camera.filmY()) + at * Vec2(camera.filmWidth(), camera.filmHeight());
+                Hit hit;
+                if (scene_.accel().intersect(camera.ray(pixel, Vec2(0)).ray, hit)) ++hits;
+            }
+        return static_cast<double>(hits) / (kSide * kSide);
     }
 
     double reserve() const {  // s: developing and writing the picture
@@ -211,7 +211,7 @@ class Render {
 
     PhotonMap map() {
         if (clock_.limited() && settings_.map.empty() && !settings_.photons)
-            return mapInSlice(emitSettings(), clock_.left());
+            return mapByTime(scene_, emitSettings(), clock_, emissionShare() * clock_.left(), run_);
         SourcedMap sourced =
             mapByCount(scene_, {settings_.map, settings_.cache, settings_.otherScene, emitSettings()}, run_);
         result_.cachedMap = sourced.cached;
@@ -339,7 +339,8 @@ void Render::progressivePasses() {
         emit.photons = pathsEach.value_or(share.end - share.begin);
         run_.seed = hashCombine(seed, pass);  // independent photons
         const bool byTime = clock_.limited() && !settings_.photons && pass == 0;
-        const PhotonMap map = byTime ? mapInSlice(emit, slice) : emitPhotons(scene_, emit, run_);
+        const PhotonMap map =
+            byTime ? mapByTime(scene_, emit, clock_, emissionShare() * slice, run_) : emitPhotons(scene_, emit, run_);
         run_.seed = seed;
         note(map);
         if (byTime) pathsEach = map.header.emittedPaths();

@@ -2,7 +2,6 @@
 
 #include <doctest/doctest.h>
 
-#include "passes/map_source.h"
 #include "scene/gltf.h"
 
 using namespace lsde;
@@ -33,21 +32,4 @@ TEST_CASE("what misses its caster is emitted less once that is known, and the fl
     const Emitted before = emitCaustics(pool, false), after = emitCaustics(pool, true);
     CHECK(after.photons > 1.2 * before.photons);
     CHECK(after.flux == doctest::Approx(before.flux).epsilon(0.01));
-}
-
-TEST_CASE("a map by time is tried before it is known how long it may go on") {
-    const Scene ball(loadGltf(LSDE_SCENES "/glass-sphere-small.glb"));
-    RunContext run;
-    uint64_t first = 0;
-    const PhotonMap map = mapByTime(
-        ball, {}, Clock(60.0, {}),
-        [&](const PhotonMap& tried, double seconds) {
-            first = tried.header.emittedPaths();
-            CHECK(tried.photons(PhotonClass::Caustic).count > first / 4);
-            CHECK(seconds > 0);
-            return 0.0;
-        },
-        run);
-    CHECK(first > 0);
-    CHECK(map.header.emittedPaths() == first);
 }
