@@ -7,10 +7,6 @@ namespace lsde {
 
 namespace {
 
-// |wi.Ns| / |wi.Ng| brings stored power to the shading frame (Veach 1997, section 5.3); grazing photons on bent normals
-// would carry any weight, so it is bounded, and counted.
-constexpr float kMaxShadingWeight = 10;
-
 // Where the normals agree so closely a Lambertian surface needs no photon's direction.
 constexpr float kFlat = 0.999999F;
 

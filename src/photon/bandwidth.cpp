@@ -55,12 +55,6 @@ std::array<float, kSignals> signalsOf(const PhotonPayload& p) {
     }
 }
 
-// To the side on which it landed.
-Vec3 sideNormal(const PhotonPayload& p) {
-    const Vec3 ng = unpackNormal(p.normal);
-    return (p.flags & kLandedOnFront) != 0 ? ng : -ng;
-}
-
 // The photons between one radius and the next smaller one.
 template <size_t kSignals>
 struct Ring {
@@ -201,7 +195,7 @@ class RadiusSearch {
         const uint64_t first = uint64_t{block} * kBlockSize, end = std::min(first + kBlockSize, tree.count);
         uint32_t count = 0;
         for (uint64_t i = first; i < end; ++i)
-            if (glm::dot(sideNormal(tree.payload[i]), query_.sideNormal) > kOtherSide) ++count;
+            if (glm::dot(landedSide(tree.payload[i]), query_.sideNormal) > kOtherSide) ++count;
         return count;
     }
 
@@ -225,7 +219,7 @@ DensityQuery queryAt(const PhotonSource& source, uint32_t photon) {
     DensityQuery query;
     query.point.position = photons.position(photon);
     query.point.ng = query.point.ns = unpackNormal(at.normal);
-    query.sideNormal = sideNormal(at);
+    query.sideNormal = landedSide(at);
     query.medium = at.medium;
     query.maxRadius = source.maxRadius;
     query.minRadius = leastRadius(query.point.position);

@@ -36,9 +36,7 @@ constexpr float kOwnWeight = 0.5F;
 // Records of a run: of its middle photon, and of one on the other side, if the surface is a sheet lit from both.
 constexpr size_t kSides = 2;
 
-// Grazing light on a bent normal may weigh so much more, as in a gather.
-constexpr float kMostShading = 10;
-
+// Photons that tell where a record's light came from, about.
 constexpr uint32_t kDirections = 64;
 
 // Where a photon came from, over its cosine: bounded along the surface.
@@ -46,7 +44,7 @@ Vec3 overCosine(const PhotonPayload& p, Vec3 side) {
     const Vec3 direction = unpackDirection(p.direction);
     const float cosine = glm::dot(direction, side);
     const Vec3 along = direction - cosine * side;
-    return side + along / std::max(cosine, glm::length(along) / kMostShading);
+    return side + along / std::max(cosine, glm::length(along) / kMaxShadingWeight);
 }
 
 // Uniform on the unit disc.
@@ -88,8 +86,7 @@ void IrradianceCache::make(Record& record, const BandwidthRule& rule, std::span<
     record.arriving = Vec3(0);
     if (record.bandwidth.count < smoothCount_) return;
     const float radiusSquared = square(record.bandwidth.radius);
-    const Vec3 side = queryAt(source_, record.photon).sideNormal;
-    // Of where the light came from some photons tell enough.
+    const Vec3 side = landedSide(photons_.payload[record.photon]);
     const uint32_t each = 1 + record.bandwidth.count / kDirections;
     uint32_t number = 0;
     for (const DensityScratch::Candidate& c : scratch.density.accepted) {
@@ -147,7 +144,7 @@ bool IrradianceCache::sameSurface(const DensityQuery& query, uint32_t photon, Ba
 
 // Of [photon, end), or end: the first one that landed on the side which faces away from `side`.
 uint32_t IrradianceCache::firstOnOtherSide(uint32_t photon, uint32_t end, Vec3 side) const {
-    while (photon < end && !(glm::dot(queryAt(source_, photon).sideNormal, side) < -kSameDirection)) ++photon;
+    while (photon < end && !(glm::dot(landedSide(photons_.payload[photon]), side) < -kSameDirection)) ++photon;
     return photon;
 }
 
@@ -160,7 +157,7 @@ bool IrradianceCache::answers(Level& level, size_t run, const DensityQuery& quer
     if (first >= end) return false;
     auto photon = static_cast<uint32_t>((first + end) / 2);
     size_t slot = kSides * run;
-    const Vec3 side = queryAt(source_, photon).sideNormal;
+    const Vec3 side = landedSide(photons_.payload[photon]);
     if (glm::dot(side, query.sideNormal) < -kSameDirection) {
         photon = firstOnOtherSide(photon, static_cast<uint32_t>(end), side);
         if (photon == end) return false;
@@ -216,7 +213,7 @@ CachedLight IrradianceCache::at(const DensityQuery& query, bool wantIrradiance, 
         if (query.point.ns != query.point.ng) {
             const Vec3 ns = glm::dot(query.point.ns, query.sideNormal) > 0 ? query.point.ns : -query.point.ns;
             const float even = glm::dot(query.sideNormal, other.arriving);
-            if (even > 0) light.shading = std::clamp(glm::dot(ns, other.arriving) / even, 0.0F, kMostShading);
+            if (even > 0) light.shading = std::clamp(glm::dot(ns, other.arriving) / even, 0.0F, kMaxShadingWeight);
         }
     }
     return light;

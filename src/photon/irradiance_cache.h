@@ -10,6 +10,10 @@
 
 namespace lsde {
 
+// |wi.Ns| / |wi.Ng| brings stored power to the shading frame (Veach 1997, section 5.3); grazing photons on bent normals
+// would carry any weight, so it is bounded.
+inline constexpr float kMaxShadingWeight = 10;
+
 struct IrradianceRule {
     BandwidthRule bandwidth;
     uint32_t smoothCount = 0;  // photons in the bandwidth from which on irradiance is kept
@@ -23,7 +27,7 @@ struct CachedLight {
     // (W/m2)^2, of their sum, as the photons' number makes it; and the radius (m) over which it is a mean.
     Rgb variance{0};
     float radius = 0;
-    // What the query's shading normal makes of the irradiance: mean of |wi.Ns| / |wi.Ng| (Veach 1997, section 5.3).
+    // What the query's shading normal makes of the irradiance: mean of |wi.Ns| / |wi.Ng|.
     float shading = 1;
 };
 

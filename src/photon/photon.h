@@ -83,4 +83,10 @@ inline Vec3 unpackDirection(uint32_t octahedral) { return Octahedral<16>::unpack
 inline uint16_t packNormal(Vec3 unit) { return static_cast<uint16_t>(Octahedral<8>::pack(unit)); }
 inline Vec3 unpackNormal(uint16_t octahedral) { return Octahedral<8>::unpack(octahedral); }
 
+// The geometric normal, to the side on which the photon landed.
+inline Vec3 landedSide(const PhotonPayload& p) {
+    const Vec3 ng = unpackNormal(p.normal);
+    return (p.flags & kLandedOnFront) != 0 ? ng : -ng;
+}
+
 }  // namespace lsde

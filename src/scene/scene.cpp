@@ -89,15 +89,13 @@ void Scene::buildLights() {
             lights_.push_back({p.name, DirectionalLight{p.direction, p.intensity, boundingSphere_}});
             continue;
         }
-        PointLight light{p.position, p.intensity};
-        if (p.kind == PunctualKind::Measured) {
-            light.axis = p.direction;
-            light.profile = p.profile;
-            light.right = p.right;
-            light.up = p.up;
-        }
+        PointLight light{.position = p.position,
+                         .intensity = p.intensity,
+                         .axis = p.direction,
+                         .profile = p.profile,
+                         .right = p.right,
+                         .up = p.up};
         if (p.kind == PunctualKind::Spot) {
-            light.axis = p.direction;
             light.oneMinusCosInner = 2 * square(std::sin(0.5F * p.innerConeAngle));
             light.oneMinusCosOuter = 2 * square(std::sin(0.5F * p.outerConeAngle));
         }
