@@ -8,7 +8,6 @@ STEM.b.exr: the first camera's picture) frames are held against it at every turn
 import argparse
 import json
 import math
-import struct
 import subprocess
 import sys
 import tempfile
@@ -18,19 +17,17 @@ import numpy as np
 
 import truths
 from errors import figures
+from glb_file import pack_glb, read_glb
 
 
-def orbit(glb, frames):
+def orbit(path, frames):
     """The scene with its first camera alone, as `frames` cameras f00, f01, ... on a circle."""
-    data = Path(glb).read_bytes()
-    length, = struct.unpack_from('<I', data, 12)
-    gltf, binary = json.loads(data[20:20 + length]), data[20 + length:]
+    gltf, binary = read_glb(path)
     nodes = gltf['nodes']
-    first = next(i for i, node in enumerate(nodes) if 'camera' in node)
-    view = nodes.pop(first) if first == len(nodes) - 1 else dict(nodes[first])
-    nodes[first:first + 1] = [{'name': 'without its camera'}] if first < len(nodes) else []
+    view = dict(next(node for node in nodes if 'camera' in node))
+    for node in nodes:
+        node.pop('camera', None)
     roots = gltf['scenes'][gltf.get('scene', 0)]['nodes']
-    roots[:] = [r for r in roots if r != first]
     x, y, z = view['translation']
     for i in range(frames):
         angle = 2 * math.pi * i / frames
@@ -41,10 +38,7 @@ def orbit(glb, frames):
                       'rotation': [half_c * qx + half_s * qz, half_c * qy + half_s * qw, half_c * qz - half_s * qx,
                                    half_c * qw - half_s * qy]})
         roots.append(len(nodes) - 1)
-    text = json.dumps(gltf).encode()
-    text += b' ' * (-len(text) % 4)
-    return (struct.pack('<4sII', b'glTF', 2, 20 + len(text) + len(binary)) + struct.pack('<I4s', len(text), b'JSON') +
-            text + binary)
+    return pack_glb(gltf, binary)
 
 
 def render(arguments, scene, out, *options):

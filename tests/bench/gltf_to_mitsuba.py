@@ -10,9 +10,7 @@ Schlick), emissive meshes, point, spot and directional lights. All else is refus
 """
 import argparse
 import io
-import json
 import math
-import struct
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,6 +20,8 @@ import numpy as np
 import OpenEXR
 from PIL import Image
 
+from glb_file import read_glb
+
 DEPTH = 64
 COMPONENTS = dict(SCALAR=1, VEC2=2, VEC3=3, VEC4=4)
 TYPES = {5120: 'i1', 5121: 'u1', 5122: '<i2', 5123: '<u2', 5125: '<u4', 5126: '<f4'}
@@ -29,10 +29,7 @@ TYPES = {5120: 'i1', 5121: 'u1', 5122: '<i2', 5123: '<u2', 5125: '<u4', 5126: '<
 
 class Glb:
     def __init__(self, path):
-        data = path.read_bytes()
-        length = struct.unpack_from('<I', data, 12)[0]
-        self.json = json.loads(data[20:20 + length])
-        self.binary = data[28 + length:]
+        self.json, self.binary = read_glb(path)
 
     def view(self, index):
         v = self.json['bufferViews'][index]

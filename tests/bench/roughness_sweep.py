@@ -13,12 +13,14 @@ import sys
 from pathlib import Path
 
 import numpy as np
-import OpenEXR
 from PIL import Image
 
 sys.path.insert(0, str(Path(__file__).parents[2] / 'scenes'))
 from gltf_writer import Node, camera, glass, lambert, lamp, metal, write_glb  # noqa: E402
 from shapes import icosphere, revolve, square  # noqa: E402
+
+import truths  # noqa: E402
+from errors import figures  # noqa: E402
 
 ROUGHNESS = (0, 0.05, 0.1, 0.15, 0.2, 0.24, 0.26, 0.3, 0.4, 0.5, 0.6)
 GREY = lambert(0.7, 0.7, 0.7)
@@ -49,19 +51,12 @@ def commands(arguments, scene):
     return out
 
 
-def picture(path):
-    with OpenEXR.File(str(path)) as file:
-        return file.channels()['RGB'].pixels.astype(float)
-
-
-def row(roughness, pictures, halves):
-    """Means, and relMSE against Mitsuba without its own noise: the product of differences to independent halves."""
+def row(roughness, pictures, truth):
+    """Means, and relMSE against Mitsuba without its own noise."""
     cells = [f'{roughness:g}'] + [f'{p.mean():.5f}' for p in pictures.values()]
-    if halves:
-        truth = pictures['mitsuba']
+    if truth:
         for p in (pictures['photons'], pictures['paths']):
-            error = np.mean((p - halves[0]) * (p - halves[1]) / (truth ** 2 + 0.01))
-            cells += [f'{p.mean() / truth.mean():.4f}', f'{error:.1e}']
+            cells += [f'{p.mean() / truth.mean.mean():.4f}', f"{figures([p], truth)['relMSE']['error']:.1e}"]
     return '| ' + ' | '.join(cells) + ' |'
 
 
@@ -75,9 +70,9 @@ def sweep(arguments, kind):
             path = arguments.folder / f'{kind}{roughness:g}.{method}.exr'
             if not path.exists():
                 subprocess.run([str(c) for c in (*command, path)], check=True)
-            pictures[method] = picture(path)
-        halves = [picture(path.with_suffix(f'.{h}.exr')) for h in 'ab'] if arguments.mitsuba else []
-        print(row(roughness, pictures, halves), flush=True)
+            pictures[method] = truths.load(path)
+        truth = truths.load_truth(arguments.folder / f'{kind}{roughness:g}.mitsuba') if arguments.mitsuba else None
+        print(row(roughness, pictures, truth), flush=True)
         columns.append(np.concatenate(list(pictures.values())))
     strip = np.clip(np.concatenate(columns, axis=1), 0, 1) ** (1 / 2.2)
     Image.fromarray((255 * strip).astype(np.uint8)).save(arguments.folder / f'roughness-{kind}.png', optimize=True)

@@ -11,13 +11,13 @@ these radii around a point of the floor y = 0. Needs mitsuba 3, numpy, OpenEXR 3
 and scenes by generate.py: triangles with positions and normals, nodes without children.
 """
 import argparse
-import json
 import math
-import struct
 
 import mitsuba as mi
 import numpy as np
 import OpenEXR
+
+from glb_file import read_glb
 
 REC709 = np.array([[3.2404542, -1.5371385, -0.4985314], [-0.9692660, 1.8760108, 0.0415560], [0.0556434, -0.2040259, 1.0572252]])
 COMPONENTS = {5126: '<f4', 5123: '<u2', 5125: '<u4'}
@@ -26,11 +26,7 @@ NUMBERS = {'SCALAR': 1, 'VEC3': 3}
 
 class Glb:
     def __init__(self, path):
-        with open(path, 'rb') as file:
-            data = file.read()
-        length = struct.unpack_from('<I', data, 12)[0]
-        self.json = json.loads(data[20:20 + length])
-        self.blob = data[28 + length:]
+        self.json, self.blob = read_glb(path)
 
     def array(self, index):
         a = self.json['accessors'][index]

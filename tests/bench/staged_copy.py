@@ -9,8 +9,6 @@ their colour (they become white; those darker than 10% dull), all their normal t
 target. Needs numpy.
 """
 import argparse
-import json
-import struct
 import sys
 from pathlib import Path
 
@@ -19,6 +17,8 @@ from gltf_writer import emitter, looking, upright  # noqa: E402
 from shapes import square  # noqa: E402
 
 import numpy as np  # noqa: E402
+
+from glb_file import pack_glb, read_glb  # noqa: E402
 
 
 def simplify(material):
@@ -40,10 +40,8 @@ def simplify(material):
 
 class Copy:
     def __init__(self, path):
-        data = path.read_bytes()
-        length = struct.unpack_from('<I', data, 12)[0]
-        self.json = json.loads(data[20:20 + length])
-        self.blob = bytearray(data[28 + length:])
+        self.json, binary = read_glb(path)
+        self.blob = bytearray(binary)
         self.blob += bytes(-len(self.blob) % 4)
 
     def add(self, kind, value):
@@ -70,10 +68,7 @@ class Copy:
         used = {name for m in self.json['materials'] for name in m['extensions']}
         self.json['extensionsUsed'] = sorted(used | set(self.json.get('extensionsUsed', [])))
         self.json['buffers'][0]['byteLength'] = len(self.blob)
-        text = json.dumps(self.json).encode()
-        text += b' ' * (-len(text) % 4)
-        chunks = struct.pack('<I4s', len(text), b'JSON') + text + struct.pack('<I4s', len(self.blob), b'BIN\0') + self.blob
-        return struct.pack('<4sII', b'glTF', 2, 12 + len(chunks)) + chunks
+        return pack_glb(self.json, self.blob)
 
 
 def main():
