@@ -168,7 +168,7 @@ DensityQuery ClassGather::densityQuery(const PhotonGatherQuery& query, GatherScr
     density.maxRadius = std::max(std::min(maxRadius_, reachOnSurface(query.point)), least);
     if (progressive_.pilot != nullptr) {
         const float r1 =
-            distanceToKth(*progressive_.pilot, query.point.position, progressive_.k, maxRadius_, scratch.pilot);
+            distanceToKth(*progressive_.pilot, query.point.position, progressive_.k, density.maxRadius, scratch.pilot);
         density.minRadius = density.maxRadius = std::max(r1 * progressive_.scale, least);
     } else {
         density.minRadius = std::clamp(rule_.footprintShare * query.point.footprint, least, density.maxRadius);

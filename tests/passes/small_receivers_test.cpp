@@ -32,12 +32,16 @@ TEST_CASE("small balls get all of their light, however few photons each has") {
     s.integrator = "photon";
     s.spp = 3;  // evenly spread: pixels without a photon are as many as they are
     s.photons = 100000;
-    Mean seen;
-    for (const RenderResult& picture : pictures(*scene, s, 16)) {
-        CHECK(picture.storedPhotons < 4000);
-        seen.add(meanOf(picture.picture));
+    for (const uint32_t passes : {0U, 3U}) {  // progressive ones, whose photons are fewer in each
+        CAPTURE(passes);
+        s.progressive = passes;
+        Mean seen;
+        for (const RenderResult& picture : pictures(*scene, s, passes > 0 ? 40 : 16)) {
+            CHECK(picture.storedPhotons < 4000);
+            seen.add(meanOf(picture.picture));
+        }
+        MESSAGE(seen.value(), " +- ", seen.standardError(), ", light traced ", expected);
+        CHECK(seen.standardError() < 0.02 * expected);
+        CHECK(seen.value() / expected == doctest::Approx(1).epsilon(0.05).scale(0));
     }
-    MESSAGE(seen.value(), " +- ", seen.standardError(), ", light traced ", expected);
-    CHECK(seen.standardError() < 0.02 * expected);
-    CHECK(seen.value() / expected == doctest::Approx(1).epsilon(0.05).scale(0));
 }
