@@ -75,7 +75,8 @@ struct Receiver {
     const Bsdf& bsdf;
     const Frame& frame;
     Vec3 wo;
-    bool passes;  // its glossy lobe
+    bool passes;        // its glossy lobe
+    uint16_t packedNg;  // the query's, as photons have theirs
 };
 
 // Whether neither direction's shading side is the other of its geometric one: reflected light would count as light that
@@ -90,7 +91,9 @@ void scatterPhoton(const PhotonPayload& p, Rgb arriving, const Receiver& at, Gat
                    GatherScratch& scratch) {
     const Vec3 direction = unpackDirection(p.direction);
     const Vec3 wi = at.frame.toLocal(direction);
-    float shading = std::fabs(wi.z / glm::dot(direction, at.query.point.ng));
+    // On curved surfaces the facet that it met is another one, on which power lies more or less densely.
+    const Vec3 ng = p.normal == at.packedNg ? at.query.point.ng : unpackNormal(p.normal);
+    float shading = std::fabs(wi.z / glm::dot(direction, ng));
     if (!(shading <= kMaxShadingWeight)) {
         shading = kMaxShadingWeight;
         ++scratch.clamped;
@@ -221,7 +224,7 @@ const GatheredLight& ClassGather::gather(const PhotonGatherQuery& query, const B
     density.balanced = surface.whole();
     const auto* diffuse = std::get_if<DiffuseBsdf>(&bsdf);
     const bool flat = diffuse != nullptr && glm::dot(query.point.ng, query.point.ns) > kFlat;
-    const Receiver receiver{query, bsdf, frame, wo, glossyLobePasses(bsdf)};
+    const Receiver receiver{query, bsdf, frame, wo, glossyLobePasses(bsdf), packNormal(query.point.ng)};
     GatheredPaths total;
     Rgb squares(0);
     const auto take = [&](uint32_t i, float kernel) {

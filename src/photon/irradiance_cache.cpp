@@ -39,8 +39,9 @@ constexpr size_t kSides = 2;
 // Photons that tell where a record's light came from, about.
 constexpr uint32_t kDirections = 64;
 
-// Where a photon came from, over its cosine: bounded along the surface.
-Vec3 overCosine(const PhotonPayload& p, Vec3 side) {
+// Where a photon came from, over its cosine with the facet that it met: bounded along the surface.
+Vec3 overCosine(const PhotonPayload& p) {
+    const Vec3 side = landedSide(p);
     const Vec3 direction = unpackDirection(p.direction);
     const float cosine = glm::dot(direction, side);
     const Vec3 along = direction - cosine * side;
@@ -86,7 +87,7 @@ void IrradianceCache::make(Record& record, const BandwidthRule& rule, std::span<
     record.arriving = Vec3(0);
     if (record.bandwidth.count < smoothCount_) return;
     const float radiusSquared = square(record.bandwidth.radius);
-    const Vec3 side = landedSide(photons_.payload[record.photon]);
+    float asked = 0;  // power of the photons that tell the direction
     const uint32_t each = 1 + record.bandwidth.count / kDirections;
     uint32_t number = 0;
     for (const DensityScratch::Candidate& c : scratch.density.accepted) {
@@ -100,8 +101,12 @@ void IrradianceCache::make(Record& record, const BandwidthRule& rule, std::span<
         irradiance[group] += e;
         irradiance.back() += e;
         record.variance += e * e;
-        if (number++ % each == 0) record.arriving += maxComponent(unpackPower(p.power)) * weight * overCosine(p, side);
+        if (number++ % each != 0) continue;
+        const float power = maxComponent(unpackPower(p.power)) * weight;
+        record.arriving += power * overCosine(p);
+        asked += power;
     }
+    if (asked > 0) record.arriving /= asked;
     const auto scale = static_cast<float>(source_.perPath) / scratch.surface.share(record.bandwidth.radius);
     for (Rgb& e : irradiance) e *= scale;
     record.variance *= square(scale);
@@ -212,8 +217,7 @@ CachedLight IrradianceCache::at(const DensityQuery& query, bool wantIrradiance, 
         light.radius = other.bandwidth.radius;
         if (query.point.ns != query.point.ng) {
             const Vec3 ns = glm::dot(query.point.ns, query.sideNormal) > 0 ? query.point.ns : -query.point.ns;
-            const float even = glm::dot(query.sideNormal, other.arriving);
-            if (even > 0) light.shading = std::clamp(glm::dot(ns, other.arriving) / even, 0.0F, kMaxShadingWeight);
+            light.shading = std::clamp(glm::dot(ns, other.arriving), 0.0F, kMaxShadingWeight);
         }
     }
     return light;

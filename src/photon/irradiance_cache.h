@@ -49,7 +49,7 @@ class IrradianceCache {
         Bandwidth bandwidth;
         std::span<const Rgb> irradiance;
         Rgb variance{0};
-        Vec3 arriving{0};  // sum of power times the direction it came from over its cosine, up to a factor
+        Vec3 arriving{0};  // mean, by power, of the direction it came from over its cosine
     };
     // The records for runs of one length, two for each run: a sheet without thickness may be lit from both sides, and
     // then photons of both lie in the same runs.
