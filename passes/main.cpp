@@ -343,8 +343,8 @@ float exposureStops(const RenderOptions& o, const SceneSettings& scene) {
 
 void writePicture(const fs::path& file, const RenderResult& r, float stops, RunContext& run) {
     const PhaseTimer timer(run, "write picture");
-    writeExr(file, r.image, r.metadata);
-    writePng(fs::path(file).replace_extension(".png"), r.picture, stops);
+    run.pool.both([&] { writeExr(file, r.image, r.metadata, run.pool.threads()); },
+                  [&] { writePng(fs::path(file).replace_extension(".png"), r.picture, stops); });
 }
 
 Json pictureFigures(const fs::path& file, const RenderResult& r) {

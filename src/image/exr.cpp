@@ -16,6 +16,7 @@
 #include <ImfStandardAttributes.h>
 #include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
+#include <ImfThreading.h>
 #include <ImfVecAttribute.h>
 #include <ImfVersion.h>
 #include <fmt/format.h>
@@ -66,11 +67,13 @@ Imf::FrameBuffer frameBuffer(const ImageFile& image, const Imath::Box2i& window)
 }
 
 // In memory, because OpenEXR writes the table of its chunks in a destructor, where an error is lost.
-std::string encodeExr(const ImageFile& image, const ExrMetadata& metadata) {
+std::string encodeExr(const ImageFile& image, const ExrMetadata& metadata, int threads) {
+    const int helpers = threads > 1 ? threads : 0;  // of OpenEXR's own, shared by all files
+    if (helpers > Imf::globalThreadCount()) Imf::setGlobalThreadCount(helpers);
     const Imf::Header header = makeHeader(image, metadata);
     Imf::StdOSStream stream;
     {
-        Imf::OutputFile file(stream, header);
+        Imf::OutputFile file(stream, header, helpers);
         file.setFrameBuffer(frameBuffer(image, header.dataWindow()));
         file.writePixels(image.height);
     }
@@ -211,10 +214,10 @@ ImageFile decodeExr(std::span<const std::byte> bytes, int64_t maxPixels) {
 
 }  // namespace
 
-void writeExr(const std::filesystem::path& path, const ImageFile& image, const ExrMetadata& metadata) {
+void writeExr(const std::filesystem::path& path, const ImageFile& image, const ExrMetadata& metadata, int threads) {
     std::string bytes;
     try {
-        bytes = encodeExr(image, metadata);
+        bytes = encodeExr(image, metadata, threads);
     } catch (const std::exception& e) {
         throw Error(fmt::format("{}: cannot be encoded: {}", path.string(), e.what()));
     }

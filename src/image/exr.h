@@ -20,8 +20,8 @@ struct ExrMetadata {
 };
 
 // Float channels, ZIP compression, Rec. 709 chromaticities; atomic (temporary file, fsync, rename). Same bytes for the
-// same input: no date, no host. Throws Error naming path and reason (disk full included).
-void writeExr(const std::filesystem::path& path, const ImageFile& image, const ExrMetadata& metadata);
+// same input, for any number of threads: no date, no host. Throws Error naming path and reason (disk full included).
+void writeExr(const std::filesystem::path& path, const ImageFile& image, const ExrMetadata& metadata, int threads = 1);
 
 // Scan-line or tiled, half, float or uint channels, all converted to float; any compression but the lossy DWAA and
 // DWAB. Attributes come as text, numbers separated by blanks. Throws Error naming path and reason for: missing, not an

@@ -137,12 +137,11 @@ TEST_CASE("values that are not finite, denormal or signed zeros are kept bit by 
     CHECK(sameBits(readExr(folder / "file.exr").channels.at("R"), image.channels.at("R")));
 }
 
-TEST_CASE("the same image gives the same bytes, for any number of threads of OpenEXR") {
+TEST_CASE("the same image gives the same bytes, for any number of threads") {
     const TemporaryFolder folder;
     const ImageFile image = testImage(200, 150);
     writeExr(folder / "a.exr", image, {});
-    Imf::setGlobalThreadCount(3);
-    writeExr(folder / "b.exr", image, {});
+    writeExr(folder / "b.exr", image, {}, 3);
     const bool same = readExr(folder / "b.exr").channels == image.channels;
     Imf::setGlobalThreadCount(0);
     CHECK(same);
