@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "base/hash.h"
+#include "base/ray.h"
 
 namespace lsde {
 
@@ -13,6 +14,7 @@ enum State : uint8_t { kUnknown, kInTheMaking, kKnown };
 
 // Cosine of the angle between normals up to which one place's irradiance says something of the other's.
 constexpr float kSameDirection = 0.95F;
+constexpr float kSteepest = 0.32F;  // sine of that angle
 
 // Lengths of the runs that have a record, in blocks.
 constexpr std::array<uint32_t, 3> kBlocksPerRecord = {16, 4, 1};
@@ -142,8 +144,11 @@ bool IrradianceCache::sameSurface(const DensityQuery& query, uint32_t photon, Ba
     const DensityQuery there = queryAt(source_, photon);
     if (there.medium != query.medium || glm::dot(there.sideNormal, query.sideNormal) < kSameDirection) return false;
     const Vec3 away = there.point.position - query.point.position;
-    if (std::fabs(glm::dot(away, query.point.ng)) > kPlaneThickness * source_.maxRadius) return false;
-    source_.extent.around(query.point.position, query.point.ng, glm::length(away), scratch.surface);
+    const float distance = glm::length(away), height = std::fabs(glm::dot(away, query.point.ng));
+    if (height > kPlaneThickness * source_.maxRadius) return false;
+    // A surface that turns by no more than that rises no more steeply; what does is another, before or behind it.
+    if (height > kSteepest * distance + surfaceEpsilon(query.point.position, 0)) return false;
+    source_.extent.around(query.point.position, query.point.ng, distance, scratch.surface);
     return scratch.surface.whole() || !scratch.surface.hides(there.point.position);
 }
 

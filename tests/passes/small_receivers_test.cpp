@@ -32,6 +32,21 @@ std::unique_ptr<Scene> coarseBall() {
     return scene.build();
 }
 
+// White labels before a blue wall, a sheet and a board, which nothing lights but a lamp in front of them: of the wall's
+// light only their backs get any.
+std::unique_ptr<Scene> labels() {
+    const auto board = [](float x, float z) {
+        return quad({x - 0.5F, -0.5F, z}, {x + 0.5F, -0.5F, z}, {x + 0.5F, 0.5F, z}, {x - 0.5F, 0.5F, z});
+    };
+    SceneBuilder scene;
+    scene.add(quad({-3, -3, 0}, {3, -3, 0}, {3, 3, 0}, {-3, 3, 0}), lambert({0.1F, 0.1F, 0.8F}));
+    scene.add(board(-1, 0.1F), lambert(Rgb(0.8F)));
+    scene.add(joined(board(1, 0.1F), flipped(board(1, 0.09F))), lambert(Rgb(0.8F)));
+    scene.add(plate({0, 3, 4}, 0.5F, false), emitter(Rgb(20)));
+    scene.camera({0, 0, 6}, {0, 0, 0}, 30);
+    return scene.build();
+}
+
 }  // namespace
 
 TEST_CASE("small balls get all of their light, however few photons each has") {
@@ -74,4 +89,20 @@ TEST_CASE("a photon weighs by the facet that it met, where shading turns away fr
             above = std::max(above, seen.pixels[i].x - expected.pixels[i].x);
         CHECK(above < 0.004F);  // of .26, the brightest
     }
+}
+
+TEST_CASE("kept irradiance of a wall does not light what hangs before it") {
+    const std::unique_ptr<Scene> scene = labels();
+    PictureSettings s = settingsFor("photon", 48, 8, 300000);
+    s.only = "LDD+E";
+    const RgbImage seen = render(*scene, s).picture;
+    // Fifteen pixels are a metre.
+    for (const int x : {9, 39})
+        for (int dy = -5; dy < 5; ++dy)
+            for (int dx = -5; dx < 5; ++dx) {
+                CAPTURE(x + dx);
+                CAPTURE(24 + dy);
+                CHECK(seen.at(x + dx, 24 + dy).z < 1e-3F);
+            }
+    CHECK(meanOf(seen) > 1e-4);  // the wall has some from the labels' backs
 }
