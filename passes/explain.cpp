@@ -51,16 +51,16 @@ std::vector<std::string> specularObjects(const Scene& scene) {
     return objectsWhere(scene, [&](size_t i) { return hasNarrowLobe(materialOf(scene, i)); });
 }
 
-// The smoothest metal: what its owner may have meant to be a mirror.
-std::string smoothestMetal(const Scene& scene) {
-    const Material* smoothest = nullptr;
+// The smoothest metal or glass: what its owner may have meant to be smooth.
+std::string smoothest(const Scene& scene) {
+    const Material* found = nullptr;
     std::string out;
     for (size_t i = 0; i < scene.meshes().size(); ++i) {
         const Material& m = materialOf(scene, i);
-        if (!(m.metallic > 0) || (smoothest != nullptr && smoothest->roughness <= m.roughness)) continue;
-        smoothest = &m;
-        out = fmt::format("the smoothest metal, \"{}\", has roughness {:.3g}", scene.description().meshes[i].object,
-                          m.roughness);
+        if (!(m.metallic > 0 || m.transmission > 0) || (found != nullptr && found->roughness <= m.roughness)) continue;
+        found = &m;
+        out = fmt::format("the smoothest {}, \"{}\", has roughness {:.3g}", m.transmission > 0 ? "glass" : "metal",
+                          scene.description().meshes[i].object, m.roughness);
     }
     return out;
 }
@@ -92,11 +92,11 @@ std::pair<NoCaustics, std::string> whyNone(const Scene& scene, const std::vector
     if (std::find(lights.begin(), lights.end(), true) == lights.end())
         return {NoCaustics::NoLight, "the scene has no lights (--sky and --environment FILE add one)"};
     if (specularObjects(scene).empty()) {
-        if (const std::string metal = smoothestMetal(scene); !metal.empty())
+        if (const std::string rough = smoothest(scene); !rough.empty())
             return {NoCaustics::TooRough,
                     fmt::format("nothing is smoother than roughness {}, below which light counts as bent ({}); what it "
                                 "throws is in the picture all the same, as indirect light",
-                                kGlossyRoughness, metal)};
+                                kGlossyRoughness, rough)};
         return {NoCaustics::NothingSpecular,
                 fmt::format("nothing in the scene is specular (no mirror, no glass, no roughness below {})",
                             kGlossyRoughness)};

@@ -18,6 +18,7 @@
 #include "passes/explain.h"
 #include "passes/info.h"
 #include "passes/integrators/registry.h"
+#include "passes/options.h"
 #include "passes/progress_bar.h"
 #include "passes/render.h"
 #include "passes/scene_source.h"
@@ -37,81 +38,6 @@ extern "C" void onSignal(int signal) {
     // A second signal ends the program at once.
     if (interruptible == nullptr || interruptible->interruptSignal != 0) _exit(128 + signal);
     interruptible->interruptSignal = signal;
-}
-
-struct CommonOptions {
-    int threads = 0;
-    uint64_t seed = 0;
-    bool quiet = false;
-    std::string logLevel = "info";
-    bool force = false;
-    std::string json;
-    SceneSettings scene;
-    EnvironmentSettings environment;
-    bool withSky = false;
-    SkySettings sky;
-};
-
-void addEnvironment(CLI::App& app, CommonOptions& o) {
-    CLI::Option* file =
-        app.add_option("--environment", o.environment.file,
-                       "light from all around: an equirectangular picture of radiance (OpenEXR, Radiance .hdr)")
-            ->type_name("FILE");
-    app.add_option("--environment-rotate", o.environment.turnDeg,
-                   "turn it about the vertical; at 0 its centre lies along +Z, at 90 along +X")
-        ->needs(file)
-        ->check(CLI::Range(-3600.0, 3600.0))
-        ->type_name("DEG");
-    app.add_option("--environment-strength", o.environment.strength, "factor of its radiance")
-        ->needs(file)
-        ->check(CLI::PositiveNumber)
-        ->type_name("X");
-}
-
-void addSky(CLI::App& app, CommonOptions& o) {
-    CLI::Option* sky =
-        app.add_flag("--sky", o.withSky,
-                     "light from the sun and a clear sky (Preetham et al. 1999): lights \"sun\", \"sky\"")
-            ->excludes("--environment");
-    const auto add = [&](const char* name, float& value, double least, double most, const char* text,
-                         const char* type) {
-        app.add_option(name, value, text)
-            ->needs(sky)
-            ->check(CLI::Range(least, most))
-            ->capture_default_str()
-            ->type_name(type);
-    };
-    add("--sun-elevation", o.sky.sunElevationDeg, 0, 90, "of the sun above the horizon", "DEG");
-    add("--sun-azimuth", o.sky.sunAzimuthDeg, -360, 360, "of the sun, from +Z towards +X", "DEG");
-    add("--turbidity", o.sky.turbidity, 2, 10, "haze of the air: 2 is clear, 10 hazy", "T");
-    add("--ground-albedo", o.sky.groundAlbedo, 0, 1, "of the ground beyond the scene, below the horizon", "A");
-}
-
-void addCommon(CLI::App& app, CommonOptions& o, bool scene) {
-    app.add_option("--threads", o.threads, "threads (0: all processors)")
-        ->check(CLI::Range(0, 4096))
-        ->capture_default_str();
-    app.add_option("--seed", o.seed, "seed of all random numbers")->capture_default_str();
-    app.add_flag("--quiet", o.quiet, "warnings and errors only, no progress bar");
-    app.add_option("--log-level", o.logLevel, "debug, info or warning")
-        ->check(CLI::IsMember({"debug", "info", "warning"}))
-        ->capture_default_str();
-    app.add_flag("--force", o.force, "overwrite outputs that exist");
-    app.add_option("--json", o.json, "write the figures of the run as JSON to FILE (-: standard output)")
-        ->type_name("FILE");
-    if (!scene) return;
-    app.add_flag("--allow-outside", o.scene.gltf.allowOutside,
-                 "take buffers and images from outside the scene's folder");
-    app.add_option("--scene", o.scene.gltf.scene, "scene within the file, by name or index (default: the file's)")
-        ->type_name("NAME");
-    app.add_option("--at", o.scene.gltf.atSeconds,
-                   "the scene where its animations have it at this time (default: at rest)")
-        ->type_name("SEC");
-    app.add_option("--variant", o.scene.gltf.variant,
-                   "materials of this variant (KHR_materials_variants; info lists them)")
-        ->type_name("NAME");
-    addEnvironment(app, o);
-    addSky(app, o);
 }
 
 void setUpLog(RunContext& run, const CommonOptions& o, ProgressBar& bar) {
@@ -165,17 +91,6 @@ struct EmitOptions {
     std::string store{name(Store::Indirect)}, shard, lights;
     bool noAim = false, resume = false;
 };
-
-std::vector<std::string> splitNames(const std::string& list) {
-    std::vector<std::string> out;
-    std::string::size_type begin = 0;
-    while (!list.empty() && begin <= list.size()) {
-        const auto end = std::min(list.find(',', begin), list.size());
-        out.push_back(list.substr(begin, end - begin));
-        begin = end + 1;
-    }
-    return out;
-}
 
 IndexRange parseShard(const std::string& text, uint64_t photons) {
     unsigned long long i = 0, n = 0;
@@ -265,24 +180,6 @@ struct RenderOptions {
     std::string integrator = "photon", size, crop, index = "kd", indirect = "photons", only, lights;
     std::vector<std::string> paths;
 };
-
-std::vector<int> parseInts(const std::string& option, const std::string& text, char separator, size_t count,
-                           const char* expected) {
-    std::vector<int> out;
-    std::string::size_type begin = 0;
-    while (begin <= text.size()) {
-        const auto end = std::min(text.find(separator, begin), text.size());
-        const std::string part = text.substr(begin, end - begin);
-        char* stop = nullptr;
-        const long value = std::strtol(part.c_str(), &stop, 10);
-        if (part.empty() || *stop != 0 || value < 0 || value > 65536)
-            throw UsageError(fmt::format("{} {}: expected {}", option, text, expected));
-        out.push_back(static_cast<int>(value));
-        begin = end + 1;
-    }
-    if (out.size() != count) throw UsageError(fmt::format("{} {}: expected {}", option, text, expected));
-    return out;
-}
 
 void settle(RenderOptions& o, const CLI::App& app) {
     RenderSettings& s = o.settings;
@@ -413,25 +310,25 @@ void addRender(CLI::App& app, RenderOptions& o) {
     app.add_flag("--no-cache", o.noCache, "neither look for the map in the user's cache folder nor keep it there");
     app.add_flag("--other-scene", o.settings.otherScene, "take a map of another scene");
     app.add_option("--photons", o.photons, "light paths to emit (default 1000000)")
-        ->check(CLI::PositiveNumber)
+        ->check(positiveNumber())
         ->type_name("N");
     app.add_option("--spp", o.spp, "samples a pixel, on average, at least 1 (default 64)")
-        ->check(CLI::Range(1.0, 1e9))
+        ->check(numberFrom(1, 1e9))
         ->type_name("N");
-    app.add_option("--time", o.wall, "wall seconds for the whole run")->check(CLI::PositiveNumber)->type_name("SEC");
+    app.add_option("--time", o.wall, "wall seconds for the whole run")->check(positiveNumber())->type_name("SEC");
     app.add_option("--cpu-time", o.cpu, "CPU seconds of all threads for the whole run")
-        ->check(CLI::PositiveNumber)
+        ->check(positiveNumber())
         ->type_name("SEC");
     app.add_option("--error", o.error,
                    "end when the estimated relMSE, the mean of error^2 / (value^2 + 0.01), is as low; photons and "
                    "samples are chosen unless given")
-        ->check(CLI::PositiveNumber)
+        ->check(positiveNumber())
         ->type_name("E");
     app.add_option("--size", o.size, "picture size in pixels (default: the camera's extras.resolution, else 1280 wide)")
         ->type_name("WxH");
     app.add_option("--exposure", o.exposure,
                    "stops by which the PNG alone is brightened (default 0; with --sky as its light asks for)")
-        ->check(CLI::Range(-100.0, 100.0))
+        ->check(numberFrom(-100, 100))
         ->type_name("STOPS");
     app.add_option("--crop", o.crop, "only these pixels of the picture")->type_name("X0,Y0,X1,Y1");
     app.add_option("--camera", o.settings.camera,
@@ -447,7 +344,7 @@ void addRender(CLI::App& app, RenderOptions& o) {
         ->capture_default_str()
         ->type_name("NAME");
     app.add_option("--progressive", o.settings.progressive, "independent photon passes with shrinking radius")
-        ->check(CLI::PositiveNumber)
+        ->check(positiveNumber())
         ->type_name("PASSES");
     app.add_option("--indirect", o.indirect,
                    "light that met a diffuse surface before: photons (of the map, where it holds them), or paths (no "
@@ -459,8 +356,7 @@ void addRender(CLI::App& app, RenderOptions& o) {
         ->capture_default_str();
 }
 
-// ------------------------------------------------------------------------------------------------------ the other
-// three
+// ---------------------------------------------------------------------------------------------------- the other three
 
 int runMerge(const std::vector<fs::path>& maps, const fs::path& output, const CommonOptions& common, RunContext& run) {
     checkOutputs({output, common.json}, common);
@@ -505,11 +401,11 @@ int parseAndRun(int argc, char** argv) {
     emitCommand->add_option("SCENE", emit.scene, "glTF scene (.gltf, .glb)")->required();
     emitCommand->add_option("-o,--output", emit.output, "photon map")->required()->type_name("MAP.lsmap");
     emitCommand->add_option("--photons", emit.settings.photons, "light paths of the whole emission, over all shards")
-        ->check(CLI::PositiveNumber)
+        ->check(positiveNumber())
         ->capture_default_str()
         ->type_name("N");
     emitCommand->add_option("--max-depth", emit.settings.maxDepth, "events of a light path")
-        ->check(CLI::Range(1, 1000000))
+        ->check(numberFrom(1, 1000000))
         ->capture_default_str()
         ->type_name("N");
     emitCommand

@@ -89,6 +89,16 @@ class Usage(Cli):
             self.run_lsde(*arguments, code=2)
         self.assertEqual(list(self.folder.glob('a*')), [])
 
+    def test_numbers_that_are_none_are_refused(self):
+        for option in ('--exposure', '--time', '--cpu-time', '--error', '--spp', '--photons', '--at', '--sun-elevation',
+                       '--environment-rotate', '--environment-strength'):
+            other = ['--sky'] if option.startswith('--sun') else ['--environment', SPHERE] if option.startswith('--env') else []
+            for value in ('nan', 'inf', '-inf'):
+                # "-inf" could be taken for an option of its own.
+                line = self.run_lsde('render', SPHERE, '-o', 'a.exr', *other, f'{option}={value}', code=2).stderr.splitlines()[0]
+                self.assertIn(f'{option}: {value}: expected a number', line)
+        self.assertIn('--variant', self.run_lsde('render', SPHERE, '-o', 'a.exr', '--variant', '', code=2).stderr)
+
     def test_a_path_expression_that_does_not_parse_names_its_column(self):
         self.refused('render', SPHERE, '-o', 'a.exr', '--paths', 'LS+D(E=x', says=['LS+D(E', 'expected'])
 

@@ -79,8 +79,11 @@ TEST_CASE("nothing specular") {
     CHECK(says(e, "nothing in the scene is specular"));
 }
 
-TEST_CASE("metal rougher than the split is named with its roughness") {
+TEST_CASE("metal or glass rougher than the split is named with its roughness") {
     Parts p;
+    p.ball = glass(1.5F);
+    p.ball.roughness = 0.26F;
+    CHECK(says(explained(scene(p)), "the smoothest glass, \"ball\", has roughness 0.26"));
     p.ball = metal(0.3F);
     const Explanation e = explained(scene(p));
     CHECK(e.reason == NoCaustics::TooRough);
