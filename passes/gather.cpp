@@ -104,10 +104,10 @@ void scatterPhoton(const PhotonPayload& p, Rgb arriving, const Receiver& at, Gat
         return;
     }
     if (at.passes && !sidesAgree(at, direction, wi)) return;
-    const BsdfEval f = evalBsdf(at.bsdf, at.wo, wi);
+    const bool glossy = at.query.glossyFromAll || (at.query.glossyFromFlagged && (p.flags & kGlossyGather) != 0);
+    const BsdfEval f = evalBsdf(at.bsdf, at.wo, wi, glossy ? Asked::F : Asked::DiffuseF);
     if (!at.query.glossyOnly) out.diffuse += power * f.diffuse.f;
-    if (at.query.glossyFromAll || (at.query.glossyFromFlagged && (p.flags & kGlossyGather) != 0))
-        out.glossy += power * f.glossy.f / square(f.eta);
+    if (glossy) out.glossy += power * f.glossy.f / square(f.eta);
 }
 
 // A photon as a path from the eye sees it.

@@ -33,12 +33,12 @@ Rgb interfaceAlbedo(float eta, Rgb tint) {
 
 }  // namespace
 
-BsdfEval evalBsdf(const Bsdf& bsdf, Vec3 wo, Vec3 wi) {
+BsdfEval evalBsdf(const Bsdf& bsdf, Vec3 wo, Vec3 wi, Asked asked) {
     return std::visit(
         Overloaded{[&](const DiffuseBsdf& b) { return b.eval(wo, wi); },
-                   [&](const MetalRoughBsdf& b) { return b.eval(wo, wi); },
+                   [&](const MetalRoughBsdf& b) { return b.eval(wo, wi, asked); },
                    [&](const TransmissiveBsdf& b) { return b.eval(wo, wi); },
-                   [&](const LayeredBsdf& b) { return b.eval(wo, wi); }, [](const auto&) { return BsdfEval{}; }},
+                   [&](const LayeredBsdf& b) { return b.eval(wo, wi, asked); }, [](const auto&) { return BsdfEval{}; }},
         bsdf);
 }
 

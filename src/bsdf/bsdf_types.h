@@ -21,6 +21,9 @@ struct BsdfEval {
     float eta = 1;  // refractive index on wi's side over that on wo's side; 1 where both are on one side
 };
 
+// What is asked of an evaluation; more may be given. Where photons are gathered, densities would be most of the cost.
+enum class Asked : uint8_t { DiffuseF, F, All };
+
 struct BsdfSample {
     Vec3 wi{0};             // unit, local frame
     Rgb weight{0};          // f |cos(wi)| / pdfW for power (delta: reflectance or transmittance / probability)

@@ -45,11 +45,17 @@ LayeredBsdf::Choice LayeredBsdf::choiceAt(Vec3 wo) const {
     return {c.base / all, c.sheen / all, c.coat / all};
 }
 
-BsdfEval LayeredBsdf::evalAbove(Vec3 wo, Vec3 wi) const {
-    const Choice p = choiceAt(wo), pReverse = choiceAt(wi);
-    const BsdfEval below = base.eval(wo, wi);
-    const float scale = under(wo, wi);
+BsdfEval LayeredBsdf::evalAbove(Vec3 wo, Vec3 wi, Asked asked) const {
     const bool narrow = anyNarrow();
+    // A wide lobe beside a narrow one is of the diffuse ones.
+    if (asked == Asked::DiffuseF && narrow && anyWide()) asked = Asked::F;
+    Choice p, pReverse;
+    if (asked == Asked::All) {
+        p = choiceAt(wo);
+        pReverse = choiceAt(wi);
+    }
+    const BsdfEval below = base.eval(wo, wi, asked);
+    const float scale = under(wo, wi);
     BsdfEval e;
     addTo(e.diffuse, below.diffuse, scale, p.base, pReverse.base);
     addTo(narrow && baseIsWide() ? e.diffuse : e.glossy, below.glossy, scale, p.base, pReverse.base);
@@ -57,13 +63,13 @@ BsdfEval LayeredBsdf::evalAbove(Vec3 wo, Vec3 wi) const {
         const LobeEval cloth{sheen.color * sheen.lobe(wo, wi), cosineHemispherePdf(wi.z), cosineHemispherePdf(wo.z)};
         addTo(e.diffuse, cloth, coat.transmittance(wo, wi), p.sheen, pReverse.sheen);
     }
-    if (!coat.empty() && !coat.isDelta())
+    if (!coat.empty() && !coat.isDelta() && asked != Asked::DiffuseF)
         addTo(narrow && coatIsWide() ? e.diffuse : e.glossy, coat.eval(wo, wi), 1, p.coat, pReverse.coat);
     return e;
 }
 
-BsdfEval LayeredBsdf::eval(Vec3 wo, Vec3 wi) const {
-    return wo.z * wi.z > 0 ? evalAbove(upper(wo), upper(wi)) : BsdfEval{};
+BsdfEval LayeredBsdf::eval(Vec3 wo, Vec3 wi, Asked asked) const {
+    return wo.z * wi.z > 0 ? evalAbove(upper(wo), upper(wi), asked) : BsdfEval{};
 }
 
 BsdfSample LayeredBsdf::baseReflection(Vec3 wo) const {

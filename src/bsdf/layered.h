@@ -22,7 +22,7 @@ struct LayeredBsdf {
     // Of the lobes that are evaluated as glossy; 0: there are none.
     float glossyRoughness() const;
 
-    BsdfEval eval(Vec3 wo, Vec3 wi) const;
+    BsdfEval eval(Vec3 wo, Vec3 wi, Asked asked = Asked::All) const;
     bool sample(Vec3 wo, float uLobe, Vec2 u, BsdfSample& sample) const;
     bool sampleNonDelta(Vec3 wo, float uLobe, Vec2 u, BsdfSample& sample) const;
     int lobes(Vec3 wo, BsdfSample* out) const;  // delta ones, at most two
@@ -41,7 +41,7 @@ struct LayeredBsdf {
     bool anyNarrow() const;  // likewise
     float under(Vec3 wo, Vec3 wi) const { return sheen.transmittance(wo, wi) * coat.transmittance(wo, wi); }
     Choice choiceAt(Vec3 wo) const;
-    BsdfEval evalAbove(Vec3 wo, Vec3 wi) const;
+    BsdfEval evalAbove(Vec3 wo, Vec3 wi, Asked asked = Asked::All) const;
     BsdfSample baseReflection(Vec3 wo) const;
     // Draws from one layer; wi and event alone, or a delta lobe with its weight.
     bool sampleLayer(const Choice& choice, Vec3 wo, float uLobe, Vec2 u, BsdfSample& sample) const;

@@ -75,20 +75,24 @@ float MetalRoughBsdf::glossyProbability(Vec3 wo) const {
     return std::clamp(both > 0 ? glossy / both : 0.5F, kLeast, 1 - kLeast);
 }
 
-BsdfEval MetalRoughBsdf::eval(Vec3 woSide, Vec3 wiSide) const {
+BsdfEval MetalRoughBsdf::eval(Vec3 woSide, Vec3 wiSide, Asked asked) const {
     BsdfEval e;
     if (!(woSide.z * wiSide.z > 0)) return e;
     const Vec3 wo = toLobe(woSide), wi = toLobe(wiSide);
     const Vec3 h = glm::normalize(wo + wi);
     const float cosH = glm::dot(wo, h);
+    const bool glossy = hasGlossy() && !glossyIsDelta() && asked != Asked::DiffuseF;
+    if (hasDiffuse()) e.diffuse.f = diffuseReflectance(*this, cosH) * kInvPi;
+    if (glossy) e.glossy.f = glossyFresnel(*this, cosH) * (ggx().d(h) * ggx().visibility(wo, wi));
+    if (asked != Asked::All) return e;
     const float p = glossyProbability(wo), pReverse = glossyProbability(wi);
-    if (hasDiffuse())
-        e.diffuse = {diffuseReflectance(*this, cosH) * kInvPi, (1 - p) * cosineHemispherePdf(wi.z),
-                     (1 - pReverse) * cosineHemispherePdf(wo.z)};
-    if (hasGlossy() && !glossyIsDelta()) {
-        const Ggx lobe = ggx();
-        e.glossy = {glossyFresnel(*this, cosH) * (lobe.d(h) * lobe.visibility(wo, wi)), p * lobe.reflectionPdf(wo, h),
-                    pReverse * lobe.reflectionPdf(wi, h)};
+    if (hasDiffuse()) {
+        e.diffuse.pdfW = (1 - p) * cosineHemispherePdf(wi.z);
+        e.diffuse.reversePdfW = (1 - pReverse) * cosineHemispherePdf(wo.z);
+    }
+    if (glossy) {
+        e.glossy.pdfW = p * ggx().reflectionPdf(wo, h);
+        e.glossy.reversePdfW = pReverse * ggx().reflectionPdf(wi, h);
     }
     return e;
 }

@@ -33,7 +33,7 @@ struct MetalRoughBsdf {
     bool hasDiffuse() const { return metallic < 1 && maxComponent(baseColor) > 0; }
     bool hasGlossy() const { return metallic > 0 || specular > 0; }
 
-    BsdfEval eval(Vec3 wo, Vec3 wi) const;
+    BsdfEval eval(Vec3 wo, Vec3 wi, Asked asked = Asked::All) const;
     bool sample(Vec3 wo, float uLobe, Vec2 u, BsdfSample& sample) const;
     bool sampleNonDelta(Vec3 wo, float uLobe, Vec2 u, BsdfSample& sample) const;
     BsdfSample reflect(Vec3 wo) const;  // the delta lobe of roughness 0, pdfW = 1

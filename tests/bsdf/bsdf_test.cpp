@@ -170,6 +170,22 @@ TEST_CASE("light scatters the same there and back, but for eta squared where it 
         }
 }
 
+TEST_CASE("who asks for less gets the same of it") {
+    test::Random random(4);
+    for (const BsdfRow& row : bsdfRows())
+        for (int i = 0; i < 200; ++i) {
+            const Vec2 u = random.uniform2D(), v = random.uniform2D();
+            const Vec3 wo = test::sphereFromSquare(u.x, u.y), wi = test::sphereFromSquare(v.x, v.y);
+            const BsdfEval all = evalBsdf(row.bsdf, wo, wi);
+            CAPTURE(row.name);
+            CHECK(evalBsdf(row.bsdf, wo, wi, Asked::DiffuseF).diffuse.f == all.diffuse.f);
+            const BsdfEval f = evalBsdf(row.bsdf, wo, wi, Asked::F);
+            CHECK(f.diffuse.f == all.diffuse.f);
+            CHECK(f.glossy.f == all.glossy.f);
+            CHECK(f.eta == all.eta);
+        }
+}
+
 TEST_CASE("sampling and quadrature find the same reflectance") {
     uint32_t seed = 4;
     forEachRow([&](const Bsdf& bsdf, Vec3 wo) {
