@@ -26,6 +26,7 @@ using Bsdf = std::variant<BlackBsdf, DiffuseBsdf, MirrorBsdf, DielectricBsdf, Th
 
 // f of each non-delta lobe (1/sr, no cosine; for power from wo to wi, see BsdfEval), with the densities that
 // sampleBsdf() has for wi given wo, and for wo given wi. Densities include the probability of choosing the lobe.
+// What is not asked for may be missing.
 BsdfEval evalBsdf(const Bsdf& bsdf, Vec3 wo, Vec3 wi, Asked asked = Asked::All);
 
 // Draws one lobe and a direction. uLobe chooses the lobe. False: absorbed, no direction.

@@ -81,18 +81,22 @@ BsdfEval MetalRoughBsdf::eval(Vec3 woSide, Vec3 wiSide, Asked asked) const {
     const Vec3 wo = toLobe(woSide), wi = toLobe(wiSide);
     const Vec3 h = glm::normalize(wo + wi);
     const float cosH = glm::dot(wo, h);
-    const bool glossy = hasGlossy() && !glossyIsDelta() && asked != Asked::DiffuseF;
-    if (hasDiffuse()) e.diffuse.f = diffuseReflectance(*this, cosH) * kInvPi;
-    if (glossy) e.glossy.f = glossyFresnel(*this, cosH) * (ggx().d(h) * ggx().visibility(wo, wi));
-    if (asked != Asked::All) return e;
-    const float p = glossyProbability(wo), pReverse = glossyProbability(wi);
+    const bool densities = asked == Asked::All;
+    const float p = densities ? glossyProbability(wo) : 0, pReverse = densities ? glossyProbability(wi) : 0;
     if (hasDiffuse()) {
-        e.diffuse.pdfW = (1 - p) * cosineHemispherePdf(wi.z);
-        e.diffuse.reversePdfW = (1 - pReverse) * cosineHemispherePdf(wo.z);
+        e.diffuse.f = diffuseReflectance(*this, cosH) * kInvPi;
+        if (densities) {
+            e.diffuse.pdfW = (1 - p) * cosineHemispherePdf(wi.z);
+            e.diffuse.reversePdfW = (1 - pReverse) * cosineHemispherePdf(wo.z);
+        }
     }
-    if (glossy) {
-        e.glossy.pdfW = p * ggx().reflectionPdf(wo, h);
-        e.glossy.reversePdfW = pReverse * ggx().reflectionPdf(wi, h);
+    if (hasGlossy() && !glossyIsDelta() && asked != Asked::DiffuseF) {
+        const Ggx lobe = ggx();
+        e.glossy.f = glossyFresnel(*this, cosH) * (lobe.d(h) * lobe.visibility(wo, wi));
+        if (densities) {
+            e.glossy.pdfW = p * lobe.reflectionPdf(wo, h);
+            e.glossy.reversePdfW = pReverse * lobe.reflectionPdf(wi, h);
+        }
     }
     return e;
 }

@@ -25,7 +25,6 @@ class Stage:
     size: str = '128x128'
     lamp: tuple = ()  # staged_copy.py's arguments
     mitsuba: tuple = ()
-    photons: int = 1000000
 
 
 STAGES = dict(
@@ -51,7 +50,7 @@ def compare(arguments, name, stage):
         '--fov', stage.fov, '--size', stage.size, *stage.lamp)
     if not truth.exists():
         run(arguments.mitsuba, here / 'gltf_to_mitsuba.py', copy, '--camera', 'staged', '-o', truth, *stage.mitsuba)
-    run(arguments.lsde, 'render', copy, '--camera', 'staged', '-o', picture, '--photons', arguments.photons or stage.photons, '--spp', 64,
+    run(arguments.lsde, 'render', copy, '--camera', 'staged', '-o', picture, '--photons', arguments.photons, '--spp', 64,
         '--no-cache', '--quiet', '--force')
     mitsuba, ours = truths.load_truth(truth.with_suffix('')), truths.load(picture)
     channels = ' '.join(f'{r:.4f}' for r in ours.mean((0, 1)) / mitsuba.mean.mean((0, 1)))
@@ -65,7 +64,7 @@ def main():
     parser.add_argument('--lsde', required=True)
     parser.add_argument('--mitsuba', required=True)
     parser.add_argument('--names', default=','.join(STAGES))
-    parser.add_argument('--photons', type=int)
+    parser.add_argument('--photons', type=int, default=1000000)
     arguments = parser.parse_args()
     arguments.folder.mkdir(parents=True, exist_ok=True)
     print('| file | mean / Mitsuba | by channel | relMSE nc |\n|---|---|---|---|')
