@@ -43,8 +43,9 @@ class PilotIrradiance {
 std::vector<LightPaths> tracePilot(LightTracerInput input, uint64_t paths, ThreadPool& pool) {
     input.stage = Stage::EmissionPilot;
     std::vector<LightPaths> results(paths / kPathsPerChunk);
-    pool.forEach(results.size(),
-                 [&](size_t i) { results[i] = traceLightPaths(input, i * kPathsPerChunk, (i + 1) * kPathsPerChunk); });
+    pool.forEach(results.size(), [&](size_t i) {
+        results[i] = traceLightPaths(input, pathsInOrder(i * kPathsPerChunk, kPathsPerChunk));
+    });
     return results;
 }
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <bit>
+
 #include "base/error.h"
 #include "passes/emission_pilot.h"
 
@@ -11,6 +13,24 @@ namespace {
 
 constexpr uint64_t kPathsPerChunk = 8192;
 constexpr uint64_t kPathsPerRound = 64 * kPathsPerChunk;  // between two looks at the interrupt
+
+// Paths [begin, end) in runs for threads, each along blocks as large as there are: paths that follow each other go much
+// the same way, and find in the caches what those before them have read.
+std::vector<PathRun> runsOf(uint64_t begin, uint64_t end, int firstDimension) {
+    std::vector<PathRun> runs;
+    while (begin < end) {
+        int digits = std::min(SobolOrder::kMostDigits, std::countr_zero(begin));
+        digits = std::min(digits, static_cast<int>(std::bit_width(end - begin)) - 1);
+        const uint64_t count = uint64_t{1} << digits;
+        PathRun run{begin, SobolOrder(digits, firstDimension, firstDimension + 1), 0, 0};
+        for (; run.from < count; run.from = run.to) {
+            run.to = std::min(run.from + kPathsPerChunk, count);
+            runs.push_back(run);
+        }
+        begin += count;
+    }
+    return runs;
+}
 
 }  // namespace
 
@@ -35,11 +55,10 @@ Emission::Emission(const Scene& scene, const EmitSettings& settings, RunContext&
 }
 
 void Emission::trace(uint64_t next, uint64_t count, RunContext& run) {
-    const size_t chunks = (count + kPathsPerChunk - 1) / kPathsPerChunk;
-    std::vector<LightPaths> results(chunks);
-    run.pool.forEach(chunks, [&](size_t i) {
-        const uint64_t begin = next + i * kPathsPerChunk, end = std::min(next + count, begin + kPathsPerChunk);
-        results[i] = traceLightPaths(tracer_, begin, end);
+    const std::vector<PathRun> runs = runsOf(next, next + count, sources_.aimingDimension());
+    std::vector<LightPaths> results(runs.size());
+    run.pool.forEach(runs.size(), [&](size_t i) {
+        results[i] = traceLightPaths(tracer_, runs[i]);
         run.rays += results[i].rays;
     });
     for (LightPaths& paths : results) {

@@ -262,11 +262,11 @@ AfterDiffuse& AfterDiffuse::operator+=(const AfterDiffuse& other) {
     return *this;
 }
 
-LightPaths traceLightPaths(const LightTracerInput& input, uint64_t begin, uint64_t end) {
+LightPaths traceLightPaths(const LightTracerInput& input, const PathRun& paths) {
     LightPaths out;
     out.ledger = Ledger(input.scene.lights().size(), input.scene.objects().size());
     const auto traceAll = [&](auto&& tracer) {
-        for (uint64_t path = begin; path < end; ++path) tracer.trace(path);
+        for (uint64_t k = paths.from; k < paths.to; ++k) tracer.trace(paths.start + paths.order.index(k));
         out.rays = tracer.rays();
     };
     if (input.scene.disperses())

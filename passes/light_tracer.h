@@ -6,6 +6,7 @@
 
 #include "photon/map_file.h"
 #include "sampling/sampler.h"
+#include "sampling/sobol_order.h"
 #include "transport/diffuse_aim.h"
 #include "transport/emission.h"
 
@@ -63,7 +64,16 @@ struct LightPaths {
     std::vector<TracedStart> starts;  // if they are kept: of each path
 };
 
-// Paths [begin, end) of the emission.
-LightPaths traceLightPaths(const LightTracerInput& input, uint64_t begin, uint64_t end);
+// Paths of the emission, in the order in which they are traced: those numbered [from, to) along a block that starts at
+// path `start`.
+struct PathRun {
+    uint64_t start = 0;
+    SobolOrder order;
+    uint64_t from = 0, to = 0;
+};
+// So many paths from `begin` on, in their own order.
+inline PathRun pathsInOrder(uint64_t begin, uint64_t count) { return {begin, {}, 0, count}; }
+
+LightPaths traceLightPaths(const LightTracerInput& input, const PathRun& paths);
 
 }  // namespace lsde

@@ -287,6 +287,13 @@ bool EmissionSampler::sample(Sampler& sampler, LightPathStart& start) const {
     return true;
 }
 
+int EmissionSampler::aimingDimension() const {
+    float withPosition = 0;
+    for (size_t i = 0; i < aims_.size(); ++i)
+        if (aims_[i].firstShared) withPosition += choice_.pmf(i);
+    return withPosition >= 0.5F ? 2 : 0;
+}
+
 EmissionSampler::Densities EmissionSampler::directionDensities(size_t index, Vec3 position, Vec3 normal, Vec3 direction,
                                                                Vec2 uPosition) const {
     const auto* point = std::get_if<PointLight>(&scene_.lights()[index].shape);

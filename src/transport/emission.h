@@ -57,6 +57,8 @@ class EmissionSampler {
     // choice of light and part 4, side 5; and the number of the wavelength. False: this start carries no light (below
     // an emitter's horizon, outside a spot's cone).
     bool sample(Sampler& sampler, LightPathStart& start) const;
+    // The first of the two dimensions that say where within their part most paths go.
+    int aimingDimension() const;
 
     Rgb totalPower() const { return totalPower_; }  // W, of the lights that take part
     // W: largest component of an unaimed path's power, on average over the lights.

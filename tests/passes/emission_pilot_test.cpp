@@ -19,7 +19,7 @@ Emitted emitCaustics(const Scene& scene, bool learn) {
     const DiffuseAim none(scene, 0);
     const LightTracerInput input{scene, sources, none, Store::Caustic};
     if (learn) sources.learn(tryAims(input, pool));
-    const LightPaths paths = traceLightPaths(input, 0, kPaths);
+    const LightPaths paths = traceLightPaths(input, pathsInOrder(0, kPaths));
     constexpr auto kCaustic = static_cast<size_t>(PhotonClass::Caustic);
     return {static_cast<double>(paths.photons[kCaustic].size()) / kPaths, paths.ledger.fluxOf(kCaustic) / kPaths};
 }
