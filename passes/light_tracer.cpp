@@ -7,61 +7,88 @@ namespace lsde {
 
 namespace {
 
-// Follows single light paths and keeps their books: at every step what the path loses is entered in one column, so that
-// the columns add up to what was emitted, exactly. The books are in the picture's channels: wavelengths are weighed,
-// which scenes without dispersion must not pay for.
+// The power of a path, as the books have it: what it loses is entered in a column when it is lost, so that the columns
+// add up to what was emitted, exactly.
+class BookedPower {
+  public:
+    BookedPower() = default;
+    explicit BookedPower(Rgb power) : power_(power), fixed_(power) {}
+
+    const FixedRgb& fixed() const { return fixed_; }
+    void become(Rgb power, FixedRgb& column) {
+        if (power == power_) return;
+        column += fixed_;
+        *this = BookedPower(power);
+        column -= fixed_;
+    }
+    void endIn(FixedRgb& column) const { column += fixed_; }
+
+  private:
+    Rgb power_{0};
+    FixedRgb fixed_;
+};
+
+// Follows light paths and keeps their books. They are in the picture's channels: wavelengths are weighed, which scenes
+// without dispersion must not pay for.
 template <bool kDisperses>
 class LightTracer {
   public:
-    LightTracer(const LightTracerInput& input, LightPaths& out) : in_(input), out_(out) {}
+    LightTracer(const LightTracerInput& input, LightPaths& out)
+        : in_(input), out_(out), total_(input.sources.totalPower()) {}
 
-    void trace(uint64_t index) {
-        Sampler sampler = Sampler::sequence(in_.seed, in_.stage, index);
-        const Rgb total = in_.sources.totalPower();
-        enter(LedgerColumn::Emitted, total);
-        LightPathStart start;
-        for (size_t c = 0; c < kPhotonClasses; ++c) photonsBefore_[c] = out_.photons[c].size();
-        if (!in_.sources.sample(sampler, start)) {
-            enter(LedgerColumn::Sampling, total);
-            if (in_.keepStarts) keepStart(start);
-            return;
+    // Some paths side by side, from surface to surface all at once: while one waits for what memory has of the triangle
+    // that it met, the others go on.
+    void trace(const PathRun& paths) {
+        constexpr size_t kSideBySide = 16;
+        uint64_t next = paths.from;
+        // Starts are in order, if they are kept: one path at a time.
+        std::vector<Lane> lanes(in_.keepStarts ? 1 : kSideBySide);
+        const auto refill = [&](Lane& lane) {
+            while (next < paths.to)
+                if (start(paths.start + paths.order.index(next++), lane)) return true;
+            return false;
+        };
+        std::erase_if(lanes, [&](Lane& lane) { return !refill(lane); });
+        while (!lanes.empty()) {
+            for (Lane& lane : lanes) {
+                lane.hits = in_.scene.accel().intersect(lane.path.state.ray, lane.hit);
+                if (lane.hits) in_.scene.prefetchTriangle(lane.hit);
+            }
+            out_.rays += lanes.size();
+            for (const Lane& lane : lanes)
+                if (lane.hits) in_.scene.prefetchVertices(lane.hit);
+            std::erase_if(lanes, [&](Lane& lane) { return !step(lane) && !nextOf(lane) && !refill(lane); });
         }
-        move(LedgerColumn::Sampling, total, start.power);
-        out_.ledger.emittedByLight[start.light] += FixedRgb(start.power);
-        ++out_.ledger.pathsByLight[start.light];
-        out_.ledger.maxAimWeight = std::max(out_.ledger.maxAimWeight, static_cast<double>(start.aimWeight));
-        light_ = start.light;
-        delta_ = in_.scene.lights()[light_].isDelta();
-        index_ = index;
-        stored_ = 0;
-        waiting_.clear();
-        waiting_.push_back({sampler, start.path()});
-        while (!waiting_.empty()) {
-            LightPath path = waiting_.back();
-            waiting_.pop_back();
-            follow(path);
-        }
-        if (in_.keepStarts) keepStart(start);
+        out_.rays += scratch_.rays;
     }
-    uint64_t rays() const { return scratch_.rays; }
 
   private:
     struct LightPath {
         Sampler sampler;
         PathState state;
+        BookedPower booked;
         LightWalkClass walk;
         PathCode code;
         uint32_t depth = 0;
+        int crossings = 0;          // since the last event
         bool unaimed = false;       // left a Lambertian surface by its own lobe
         bool aimedDiffuse = false;  // aimed since the light met a D
     };
 
-    void enter(LedgerColumn column, Rgb power) { out_.ledger[column] += FixedRgb(power); }
-    // Power went from `before` to `after`: the difference belongs to the column.
-    void move(LedgerColumn column, Rgb before, Rgb after) {
-        if (before == after) return;
-        out_.ledger[column] += FixedRgb(before) - FixedRgb(after);
-    }
+    // A path of the emission, with all that it splits into.
+    struct Lane {
+        LightPath path;
+        std::vector<LightPath> waiting;
+        LightPathStart start;
+        std::array<size_t, kPhotonClasses> photonsBefore{};
+        uint64_t index = 0;
+        uint64_t stored = 0;  // photons of this path
+        bool delta = false;
+        Hit hit;
+        bool hits = false;
+    };
+
+    FixedRgb& column(LedgerColumn c) { return out_.ledger[c]; }
 
     static Rgb inChannels(Rgb power, WavelengthId wavelength) {
         if constexpr (kDisperses) return weighed(power, wavelength);
@@ -69,58 +96,94 @@ class LightTracer {
     }
     static Rgb carried(const LightPath& path) { return inChannels(path.state.throughput, path.state.wavelength); }
 
-    void keepStart(const LightPathStart& start) {
-        TracedStart& kept = out_.starts.emplace_back();
-        kept.aim = {start.light, start.part, {start.u, 0}};
-        for (size_t c = 0; c < kPhotonClasses; ++c)
-            kept.photons[c] = static_cast<uint32_t>(out_.photons[c].size() - photonsBefore_[c]);
-    }
-
-    void follow(LightPath& path) {
-        for (;; ++path.depth) {
-            const Rgb before = carried(path);
-            const uint64_t raysBefore = scratch_.rays;
-            Vertex v;
-            const bool arrives = advance(in_.scene, path.state, v, scratch_);
-            if (path.walk.metDiffuse())
-                (path.aimedDiffuse ? out_.afterDiffuse.aimedRays : out_.afterDiffuse.rays) +=
-                    scratch_.rays - raysBefore;
-            if (path.unaimed) {
-                ++out_.afterDiffuse.bounces;
-                out_.afterDiffuse.escaped += arrives ? 0 : 1;
-                path.unaimed = false;
-            }
-            if (!arrives) {
-                // What a medium takes from light that never arrives anywhere is not told apart from what escapes.
-                enter(LedgerColumn::Escaped, before);
-                return;
-            }
-            move(LedgerColumn::AbsorbedVolume, before, carried(path));
-            land(v, path);
-            if (path.depth >= in_.maxDepth) {
-                enter(LedgerColumn::DepthCut, carried(path));
-                return;
-            }
-            const auto* lambert = std::get_if<DiffuseBsdf>(&v.bsdf);
-            if (lambert != nullptr && in_.store != Store::Caustic) {
-                scatterFairly(v, *lambert, path);
-                return;
-            }
-            if (!bounce(v, path)) return;
+    // False: no light goes that way.
+    bool start(uint64_t index, Lane& lane) {
+        Sampler sampler = Sampler::sequence(in_.seed, in_.stage, index);
+        total_.endIn(column(LedgerColumn::Emitted));
+        LightPathStart& start = lane.start = {};
+        for (size_t c = 0; c < kPhotonClasses; ++c) lane.photonsBefore[c] = out_.photons[c].size();
+        if (!in_.sources.sample(sampler, start)) {
+            total_.endIn(column(LedgerColumn::Sampling));
+            if (in_.keepStarts) keepStart(lane);
+            return false;
         }
+        lane.path = {sampler, start.path(), total_};
+        lane.path.booked.become(start.power, column(LedgerColumn::Sampling));
+        out_.ledger.emittedByLight[start.light] += lane.path.booked.fixed();
+        ++out_.ledger.pathsByLight[start.light];
+        out_.ledger.maxAimWeight = std::max(out_.ledger.maxAimWeight, static_cast<double>(start.aimWeight));
+        lane.delta = in_.scene.lights()[start.light].isDelta();
+        lane.index = index;
+        lane.stored = 0;
+        return true;
     }
 
-    void land(const Vertex& v, const LightPath& path) {
+    // The next of the paths that a path has split into; false: there is none, and it is done.
+    bool nextOf(Lane& lane) {
+        if (lane.waiting.empty()) {
+            if (in_.keepStarts) keepStart(lane);
+            return false;
+        }
+        lane.path = lane.waiting.back();
+        lane.waiting.pop_back();
+        return true;
+    }
+
+    void keepStart(const Lane& lane) {
+        TracedStart& kept = out_.starts.emplace_back();
+        kept.aim = {lane.start.light, lane.start.part, {lane.start.u, 0}};
+        for (size_t c = 0; c < kPhotonClasses; ++c)
+            kept.photons[c] = static_cast<uint32_t>(out_.photons[c].size() - lane.photonsBefore[c]);
+    }
+
+    // From where the path's ray arrives to its next ray. False: it has ended, and its power has been entered.
+    bool step(Lane& lane) {
+        LightPath& path = lane.path;
+        const bool escapes = !lane.hits || path.crossings == kMostCrossings;
+        const uint64_t raysBefore = scratch_.rays;
+        Vertex v;
+        const bool arrives = !escapes && arrive(in_.scene, lane.hit, path.state, v, scratch_);
+        if (path.walk.metDiffuse())
+            (path.aimedDiffuse ? out_.afterDiffuse.aimedRays : out_.afterDiffuse.rays) +=
+                1 + scratch_.rays - raysBefore;
+        if (!escapes && !arrives) {
+            ++path.crossings;
+            return true;
+        }
+        path.crossings = 0;
+        if (path.unaimed) {
+            ++out_.afterDiffuse.bounces;
+            out_.afterDiffuse.escaped += escapes ? 1 : 0;
+            path.unaimed = false;
+        }
+        if (escapes) {
+            // What a medium takes from light that never arrives anywhere is not told apart from what escapes.
+            path.booked.endIn(column(LedgerColumn::Escaped));
+            return false;
+        }
+        path.booked.become(carried(path), column(LedgerColumn::AbsorbedVolume));
+        land(v, lane);
+        if (path.depth++ >= in_.maxDepth) {
+            path.booked.endIn(column(LedgerColumn::DepthCut));
+            return false;
+        }
+        const auto* lambert = std::get_if<DiffuseBsdf>(&v.bsdf);
+        if (lambert != nullptr && in_.store != Store::Caustic) return scatterFairly(v, *lambert, lane);
+        return bounce(v, path);
+    }
+
+    void land(const Vertex& v, Lane& lane) {
+        const LightPath& path = lane.path;
         const bool glossy = hasGlossyLobe(v.bsdf);
         const bool wide = hasDiffuseLobe(v.bsdf) || (glossy && glossyClass(v.bsdf) == VertexClass::Diffuse);
-        const bool forGlossy = glossy && path.walk.causticAtGlossy(delta_);
+        const bool forGlossy = glossy && path.walk.causticAtGlossy(lane.delta);
         if (!wide && !forGlossy) return;
         const PhotonClass c = path.walk.metDiffuse() ? PhotonClass::Indirect
                               : path.walk.metAny()   ? PhotonClass::Caustic
                                                      : PhotonClass::Direct;
         const MeshInfo& info = in_.scene.meshes()[v.surface.mesh];
         ++out_.ledger.landed[static_cast<size_t>(c)];
-        out_.ledger.flux[static_cast<size_t>(c) * in_.scene.objects().size() + info.object] += FixedRgb(carried(path));
+        path.booked.endIn(out_.ledger.flux[static_cast<size_t>(c) * in_.scene.objects().size() + info.object]);
         if (!info.receiver || !holds(in_.store, c)) return;
         Photon photon;
         photon.position = v.surface.position;
@@ -128,39 +191,41 @@ class LightTracer {
         photon.power = path.state.throughput / in_.scene.coverage(v.surface);
         photon.direction = v.woWorld;
         photon.ng = v.surface.ng;
-        photon.light = static_cast<uint16_t>(light_);
+        photon.light = static_cast<uint16_t>(lane.start.light);
         photon.medium = v.medium;
-        photon.flags = static_cast<uint16_t>((delta_ ? kFromDeltaLight : 0) |
-                                             (path.walk.causticAtGlossy(delta_) ? kGlossyGather : 0));
+        photon.flags = static_cast<uint16_t>((lane.delta ? kFromDeltaLight : 0) |
+                                             (path.walk.causticAtGlossy(lane.delta) ? kGlossyGather : 0));
         photon.wavelength = path.state.wavelength;
         photon.path = path.code;
-        photon.key = hashCombine(in_.seed, hashCombine(index_, stored_++));
+        photon.key = hashCombine(in_.seed, hashCombine(lane.index, lane.stored++));
         if (path.code.overflowed()) ++out_.ledger.unclassified;
         out_.photons[static_cast<size_t>(c)].push_back(pack(photon));
     }
 
     // Light goes on from a Lambertian surface as so many paths that each carries a fair power, none or several, and
     // towards casters as so many more that each carries less. What these light in turn goes on with the fair power: the
-    // number of paths is bounded by the power there is.
-    void scatterFairly(const Vertex& v, const DiffuseBsdf& lambert, LightPath& path) {
+    // number of paths is bounded by the power there is. Always false: they wait.
+    bool scatterFairly(const Vertex& v, const DiffuseBsdf& lambert, Lane& lane) {
+        LightPath& path = lane.path;
         const Rgb arriving = path.state.throughput;
         const DiffuseAim::At aim = in_.diffuseAim.at(v, lambert);
         const float fair = maxComponent(arriving * lambert.albedo) / in_.fairPower;
         const float lobe = std::min(fair, kMostCopies), copies = lobe * aim.effort();
         const auto count = static_cast<uint32_t>(copies + path.sampler.next());
-        const Rgb each = arriving / copies;
         out_.afterDiffuse.lobePaths += static_cast<double>(lobe);
         if (aim.share() > 0) out_.afterDiffuse.seeingPaths += static_cast<double>(lobe);
         out_.afterDiffuse.inCones += static_cast<double>(lobe * aim.share());
-        enter(LedgerColumn::Roulette, carried(path));
-        ++path.depth;
+        path.booked.endIn(column(LedgerColumn::Roulette));
+        if (count == 0) return false;
+        path.state.throughput = arriving / copies;
+        path.booked = BookedPower(carried(path));
         for (uint32_t i = 0; i < count; ++i) {
-            out_.ledger[LedgerColumn::Roulette] -= FixedRgb(inChannels(each, path.state.wavelength));
+            column(LedgerColumn::Roulette) -= path.booked.fixed();
             LightPath copy = path;
             if (count > 1) copy.sampler = path.sampler.fork(i);
-            copy.state.throughput = each;
-            if (leaveLambertian(v, lambert, aim, copy)) waiting_.push_back(copy);
+            if (leaveLambertian(v, lambert, aim, copy)) lane.waiting.push_back(copy);
         }
+        return false;
     }
 
     // False: the path ended, and its power has been entered.
@@ -168,34 +233,31 @@ class LightTracer {
         const Rgb arriving = carried(path);
         const float uChoice = path.sampler.next();
         DiffuseAim::Direction next;
-        const Rgb scattered = arriving * lambert.albedo;
-        move(LedgerColumn::AbsorbedSurface, arriving, scattered);
+        path.booked.become(arriving * lambert.albedo, column(LedgerColumn::AbsorbedSurface));
         if (!aim.sample(uChoice, path.sampler.next2D(), next)) {
-            enter(LedgerColumn::Sampling, scattered);
+            path.booked.endIn(column(LedgerColumn::Sampling));
             return false;
         }
         next.sample.weight = lambert.albedo * (aim.effort() * next.weight);
         path.unaimed = !next.aimed;
         path.aimedDiffuse |= next.aimed;
         out_.afterDiffuse.aimedBounces += next.aimed ? 1 : 0;
-        move(LedgerColumn::Sampling, scattered, arriving * next.sample.weight);
+        path.booked.become(arriving * next.sample.weight, column(LedgerColumn::Sampling));
         return leave(v, next.sample, path);
     }
 
     bool bounce(const Vertex& v, LightPath& path) {
-        const Rgb arriving = carried(path);
         const Rgb power = path.state.throughput;
         BsdfSample sample;
         const float uLobe = path.sampler.next();
         const Vec2 u = path.sampler.next2D();
         if (std::holds_alternative<BlackBsdf>(v.bsdf) || !sampleBsdf(v.bsdf, v.wo, uLobe, u, sample)) {
-            enter(LedgerColumn::AbsorbedSurface, arriving);
+            path.booked.endIn(column(LedgerColumn::AbsorbedSurface));
             return false;
         }
-        const Rgb scattered = arriving * sample.weight;
-        move(LedgerColumn::AbsorbedSurface, arriving, scattered);
+        path.booked.become(carried(path) * sample.weight, column(LedgerColumn::AbsorbedSurface));
         if (classOf(v.bsdf, sample) == VertexClass::Diffuse && in_.store == Store::Caustic) {
-            enter(LedgerColumn::Continued, scattered);
+            path.booked.endIn(column(LedgerColumn::Continued));
             return false;
         }
         return leave(v, sample, path) && roulette(power, path);
@@ -203,14 +265,12 @@ class LightTracer {
 
     bool leave(const Vertex& v, const BsdfSample& sample, LightPath& path) {
         const WavelengthId before = path.state.wavelength;
-        const Rgb sampled = carried(path) * sample.weight;
         if (!scatter(v, sample, Quantity::Power, path.state)) {
-            enter(LedgerColumn::ShadingNormal, sampled);
+            path.booked.endIn(column(LedgerColumn::ShadingNormal));
             return false;
         }
-        const Rgb scattered = inChannels(path.state.throughput, before);
-        move(LedgerColumn::ShadingNormal, sampled, scattered);
-        if constexpr (kDisperses) move(LedgerColumn::Sampling, scattered, carried(path));
+        path.booked.become(inChannels(path.state.throughput, before), column(LedgerColumn::ShadingNormal));
+        if constexpr (kDisperses) path.booked.become(carried(path), column(LedgerColumn::Sampling));
         path.walk.pass(classOf(v.bsdf, sample));
         path.code.append(sample.event);
         return true;
@@ -218,15 +278,14 @@ class LightTracer {
 
     // By what a path lost at a surface, so that what is kept has even power.
     bool roulette(Rgb arriving, LightPath& path) {
-        const Rgb before = carried(path);
         const float keep = std::min(1.0F, maxComponent(path.state.throughput) / maxComponent(arriving));
         if (keep >= 1) return true;
         if (path.sampler.next() >= keep) {
-            enter(LedgerColumn::Roulette, before);
+            path.booked.endIn(column(LedgerColumn::Roulette));
             return false;
         }
         path.state.throughput /= keep;
-        move(LedgerColumn::Roulette, before, carried(path));
+        path.booked.become(carried(path), column(LedgerColumn::Roulette));
         return true;
     }
 
@@ -234,13 +293,8 @@ class LightTracer {
 
     const LightTracerInput& in_;
     LightPaths& out_;
+    const BookedPower total_;  // of the lights
     WalkScratch scratch_;
-    size_t light_ = 0;
-    uint64_t index_ = 0;
-    uint64_t stored_ = 0;  // photons of this path
-    bool delta_ = false;
-    std::array<size_t, kPhotonClasses> photonsBefore_{};
-    std::vector<LightPath> waiting_;
 };
 
 }  // namespace
@@ -265,14 +319,10 @@ AfterDiffuse& AfterDiffuse::operator+=(const AfterDiffuse& other) {
 LightPaths traceLightPaths(const LightTracerInput& input, const PathRun& paths) {
     LightPaths out;
     out.ledger = Ledger(input.scene.lights().size(), input.scene.objects().size());
-    const auto traceAll = [&](auto&& tracer) {
-        for (uint64_t k = paths.from; k < paths.to; ++k) tracer.trace(paths.start + paths.order.index(k));
-        out.rays = tracer.rays();
-    };
     if (input.scene.disperses())
-        traceAll(LightTracer<true>(input, out));
+        LightTracer<true>(input, out).trace(paths);
     else
-        traceAll(LightTracer<false>(input, out));
+        LightTracer<false>(input, out).trace(paths);
     return out;
 }
 

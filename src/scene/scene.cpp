@@ -149,6 +149,14 @@ Surface Scene::surface(const Hit& hit) const {
     return s;
 }
 
+void Scene::prefetchVertices(const Hit& hit) const {
+    const Mesh& mesh = description_.meshes[hit.mesh];
+    for (const uint32_t vertex : mesh.triangles[hit.triangle]) {
+        __builtin_prefetch(&mesh.positions[vertex]);
+        if (!mesh.normals.empty()) __builtin_prefetch(&mesh.normals[vertex]);
+    }
+}
+
 Vec3 Scene::vertexNormal(const Surface& s) const {
     const Mesh& mesh = description_.meshes[s.mesh];
     if (mesh.normals.empty()) return s.ng;

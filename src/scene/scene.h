@@ -61,6 +61,11 @@ class Scene {
     const Accel& accel() const { return accel_; }
 
     Surface surface(const Hit& hit) const;
+    // Has the caches fetch what surface() will read: the triangle, then, when that has come, its vertices.
+    void prefetchTriangle(const Hit& hit) const {
+        __builtin_prefetch(&description_.meshes[hit.mesh].triangles[hit.triangle]);
+    }
+    void prefetchVertices(const Hit& hit) const;
     // 1/m: the largest along the edges of the triangle, as its vertices' normals tell.
     float curvature(const Surface& s) const;
     const Material& material(const Surface& s) const {

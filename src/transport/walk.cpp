@@ -8,9 +8,6 @@ namespace lsde {
 
 namespace {
 
-// Surfaces that a ray passes without an event: more than in any scene, so that no rounding makes a walk go on for ever.
-constexpr int kMostCrossings = 1000;
-
 // Refractive index of a medium: glTF's ior 0 stands for an infinite one.
 float iorOf(const Medium& m, WavelengthId wavelength) {
     if (m.dispersion > 0 && wavelength != kAllWavelengths)
@@ -81,36 +78,40 @@ Rgb absorption(const Scene& scene, const MediaStack& media, float distance) {
     return {std::exp(-sigma.x * d), std::exp(-sigma.y * d), std::exp(-sigma.z * d)};
 }
 
+bool arrive(const Scene& scene, const Hit& hit, PathState& path, Vertex& vertex, WalkScratch& scratch) {
+    const auto [s, media, interface] = arrivalAt(scene, hit, path, scratch);
+    vertex.distance += hit.t;
+    path.throughput *= absorption(scene, media.before, hit.t);
+    const MediumId before = media.before.dominant(scene.media());
+    const MediumId behind = media.after.dominant(scene.media());
+    if (interface && before == behind) {
+        path.media = media.after;
+        path.ray = {offsetOrigin(s.position, s.ng, path.ray.direction, s.epsilon), path.ray.direction, kInfinity};
+        return false;
+    }
+    vertex.surface = s;
+    vertex.interface = interface;
+    vertex.before = media.before;
+    vertex.behind = media.after;
+    vertex.medium = before;
+    vertex.woWorld = -path.ray.direction;
+    vertex.frame = Frame(s.ns);
+    vertex.wo = vertex.frame.toLocal(vertex.woWorld);
+    const bool fromFront = glm::dot(s.ng, vertex.woWorld) > 0;
+    const Medium &in = scene.media()[before], &out = scene.media()[behind];
+    const float iorBefore = iorOf(in, path.reserved), iorBehind = iorOf(out, path.reserved);
+    vertex.disperses = interface && in.dispersion + out.dispersion > 0;
+    vertex.bsdf = scene.bsdf(s, fromFront ? iorBefore : iorBehind, fromFront ? iorBehind : iorBefore);
+    return true;
+}
+
 bool advance(const Scene& scene, PathState& path, Vertex& vertex, WalkScratch& scratch) {
     vertex.distance = 0;
     for (int crossings = 0; crossings < kMostCrossings; ++crossings) {
         Hit hit;
         ++scratch.rays;
         if (!scene.accel().intersect(path.ray, hit)) return false;
-        const auto [s, media, interface] = arrivalAt(scene, hit, path, scratch);
-        vertex.distance += hit.t;
-        path.throughput *= absorption(scene, media.before, hit.t);
-        const MediumId before = media.before.dominant(scene.media());
-        const MediumId behind = media.after.dominant(scene.media());
-        if (interface && before == behind) {
-            path.media = media.after;
-            path.ray = {offsetOrigin(s.position, s.ng, path.ray.direction, s.epsilon), path.ray.direction, kInfinity};
-            continue;
-        }
-        vertex.surface = s;
-        vertex.interface = interface;
-        vertex.before = media.before;
-        vertex.behind = media.after;
-        vertex.medium = before;
-        vertex.woWorld = -path.ray.direction;
-        vertex.frame = Frame(s.ns);
-        vertex.wo = vertex.frame.toLocal(vertex.woWorld);
-        const bool fromFront = glm::dot(s.ng, vertex.woWorld) > 0;
-        const Medium &in = scene.media()[before], &out = scene.media()[behind];
-        const float iorBefore = iorOf(in, path.reserved), iorBehind = iorOf(out, path.reserved);
-        vertex.disperses = interface && in.dispersion + out.dispersion > 0;
-        vertex.bsdf = scene.bsdf(s, fromFront ? iorBefore : iorBehind, fromFront ? iorBehind : iorBefore);
-        return true;
+        if (arrive(scene, hit, path, vertex, scratch)) return true;
     }
     return false;
 }

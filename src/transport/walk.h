@@ -43,6 +43,13 @@ struct WalkScratch {
 // over. The throughput takes the media's absorption (Beer-Lambert). False: the light escapes.
 bool advance(const Scene& scene, PathState& path, Vertex& vertex, WalkScratch& scratch);
 
+// Its second half, for paths that are followed side by side: at what the path's ray has hit. The vertex's distance
+// grows by the ray's. False: a crossing that another solid hides, and the path goes on beyond it.
+bool arrive(const Scene& scene, const Hit& hit, PathState& path, Vertex& vertex, WalkScratch& scratch);
+
+// Surfaces that a ray passes without an event: more than in any scene, so that no rounding makes a walk go on for ever.
+inline constexpr int kMostCrossings = 1000;
+
 // Leaves the vertex by the sample. False if nothing is carried on: the sampled direction's geometric and shading sides
 // differ, or the throughput is zero. Where the surface disperses, the path has a wavelength from here on, whichever way
 // it goes: what is reflected depends on the wavelength as well, most of all near total reflection.
