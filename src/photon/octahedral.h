@@ -34,7 +34,11 @@ struct Octahedral {
     }
 
   private:
-    static uint32_t quantised(float x) { return static_cast<uint32_t>(std::lround(x * kSteps) + kBias) & kMask; }
+    // To the nearest step, halves away from zero.
+    static uint32_t quantised(float x) {
+        const double steps = static_cast<double>(x * kSteps);
+        return static_cast<uint32_t>(static_cast<int>(steps + std::copysign(0.5, steps)) + kBias) & kMask;
+    }
     static float coordinate(uint32_t bits) {
         return static_cast<float>(static_cast<int>(bits & kMask) - kBias) * (1.0F / kSteps);
     }

@@ -59,11 +59,11 @@ uint32_t packPower(Rgb power, uint64_t key) {
     const int stored = std::max(exponent - 8 + kPowerExponentBias, kLeastPowerExponent);
     uint64_t random = mix64(key);
     uint32_t bits = static_cast<uint32_t>(stored) << 24;
+    const auto perUnit = std::bit_cast<double>(static_cast<uint64_t>(1023 + kPowerExponentBias - stored) << 52);
     for (int c = 0; c < 3; ++c, random >>= 21) {
         // floor(x + u) has the mean x.
         const double u = (static_cast<double>(random & 0x1fffff) + 0.5) * 0x1p-21;
-        const double units = std::ldexp(static_cast<double>(power[c]), kPowerExponentBias - stored);
-        bits |= static_cast<uint32_t>(std::floor(units + u)) << (8 * c);
+        bits |= static_cast<uint32_t>(static_cast<double>(power[c]) * perUnit + u) << (8 * c);
     }
     return bits;
 }

@@ -68,8 +68,9 @@ constexpr std::array<ByteTables, kSobolTableDimensions> kTables = {byteTables(0)
 
 uint32_t sobolReversed(uint64_t index, int dimension) {
     const ByteTables& tables = kTables[static_cast<size_t>(dimension)];
-    uint32_t x = 0;
-    for (size_t byte = 0; index != 0; index >>= 8, ++byte) x ^= tables[byte][index & 255];
+    uint32_t x = tables[0][index & 255] ^ tables[1][index >> 8 & 255] ^ tables[2][index >> 16 & 255];
+    index >>= 24;
+    for (size_t byte = 3; index != 0; index >>= 8, ++byte) x ^= tables[byte][index & 255];
     return x;
 }
 
