@@ -100,8 +100,8 @@ class Sorter {
     ThreadPool& pool_;
 };
 
-std::vector<Key> makeKeys(std::span<const PackedPhoton> photons, ThreadPool& pool) {
-    std::vector<Key> keys(photons.size());
+UnsetVector<Key> makeKeys(std::span<const PackedPhoton> photons, ThreadPool& pool) {
+    UnsetVector<Key> keys(photons.size());
     pool.forRange(photons.size(), kGrain * kBlockSize, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i) {
             const Vec3 p = photons[i].position;
@@ -200,7 +200,7 @@ PhotonTree buildPhotonTree(std::vector<PackedPhoton>&& photons, ThreadPool& pool
     const std::vector<PackedPhoton> input = std::move(photons);  // freed at the end
     if (input.size() > (uint64_t{1} << 32) - 17)
         throw Error(fmt::format("{} photons in one class: expected at most 2^32 - 17", input.size()));
-    std::vector<Key> keys = makeKeys(input, pool);
+    UnsetVector<Key> keys = makeKeys(input, pool);
     Sorter(input, pool).sort(keys);
 
     const KdShape shape(input.size());

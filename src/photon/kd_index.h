@@ -9,6 +9,7 @@
 
 #include "base/bounds.h"
 #include "base/parallel.h"
+#include "base/unset_vector.h"
 #include "photon/neighbours.h"
 #include "photon/photon.h"
 
@@ -44,9 +45,9 @@ struct KdShape {
 struct PhotonTree {
     uint64_t count = 0;
     Bounds bounds;
-    std::vector<PhotonBlock> blocks;
-    std::vector<KdNode> nodes;
-    std::vector<PhotonPayload> payload;  // count entries, in the order of the blocks
+    UnsetVector<PhotonBlock> blocks;
+    UnsetVector<KdNode> nodes;
+    UnsetVector<PhotonPayload> payload;  // count entries, in the order of the blocks
 };
 
 // The same, borrowed from a PhotonTree or from a mapped file.
