@@ -10,8 +10,9 @@ namespace {
 constexpr int kMostLevels = 24;
 // Standard errors by which the power in a ring may differ from that in the disc of equal area within it.
 constexpr double kRingTolerance = 3;
-// And by which the power in a disc may lie to one side.
-constexpr double kBalanceTolerance = 3;
+// And by which the power in a disc may lie to one side. Brightness that rises steadily lies there as well, without
+// harm; half a disc in the dark is plainer than that. Where colours meet, each channel changes by a part only.
+constexpr double balanceTolerance(size_t signals) { return signals == 1 ? 5 : 3; }
 // Photons whose own block of the tree is this many times as dense as the smallest disc belong to something else, beyond
 // an edge. A few of them are no chance: a block's density has an error of a quarter.
 constexpr float kDense = 4;
@@ -128,8 +129,9 @@ class RadiusSearch {
         return false;
     }
     static bool toOneSide(const Ring<kSignals>& within) {
-        return std::any_of(within.signals.begin(), within.signals.end(),
-                           [](const Moments& m) { return liesToOneSide(m.moment, m.ppd2, kBalanceTolerance); });
+        return std::any_of(within.signals.begin(), within.signals.end(), [](const Moments& m) {
+            return liesToOneSide(m.moment, m.ppd2, balanceTolerance(kSignals));
+        });
     }
     void estimate(int level, const Ring<kSignals>& within, float r2) {
         const float share = scratch_.surface.share(std::min(std::sqrt(r2), query_.maxRadius));
