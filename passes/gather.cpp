@@ -137,19 +137,29 @@ PathGroups groupsOf(const GatherInput& input, const PhotonTreeView& tree, RunCon
 
 }  // namespace
 
+RadiusRule grown(RadiusRule rule, uint64_t photons) {
+    constexpr double kPhotonsOfRule = 1e6;
+    const auto growth = static_cast<float>(std::cbrt(square(static_cast<double>(photons) / kPhotonsOfRule)));
+    if (growth <= 1) return rule;
+    uint32_t& mostCount = rule.irradiance.bandwidth.mostCount;
+    mostCount = static_cast<uint32_t>(static_cast<float>(mostCount) * growth);
+    rule.reachAtMean *= growth;
+    return rule;
+}
+
 ClassGather::ClassGather(const GatherInput& input, PhotonClass c, const GatherSettings& settings,
                          const RadiusRule& rule, const ProgressiveRadius& progressive, RunContext& run)
     : tree_(input.map.photons(c)),
       index_(makeIndex(settings.index, tree_, run)),
-      rule_(rule),
+      rule_(grown(rule, tree_.count)),
       progressive_(progressive),
       wavelengthShare_(settings.wavelengthShare * settings.progressive.scale),
       groups_(groupsOf(input, tree_, run)),
-      maxRadius_(radiusAtMean(input, c, rule.growthAtMean)),
-      reach_(radiusAtMean(input, c, rule.reachAtMean)) {
+      maxRadius_(radiusAtMean(input, c, rule_.growthAtMean)),
+      reach_(radiusAtMean(input, c, rule_.reachAtMean)) {
     const float most = radiusAtMost(tree_, index_);
-    maxRadius_ = std::min(maxRadius_, most * std::sqrt(rule.growthAtMean / static_cast<float>(kNear)));
-    reach_ = std::min(reach_, most * std::sqrt(rule.reachAtMean / static_cast<float>(kNear)));
+    maxRadius_ = std::min(maxRadius_, most * std::sqrt(rule_.growthAtMean / static_cast<float>(kNear)));
+    reach_ = std::min(reach_, most * std::sqrt(rule_.reachAtMean / static_cast<float>(kNear)));
     if (progressive.pilot != nullptr) maxRadius_ *= kPilotRadius;
     extent_ = SurfaceExtent(input.creases);
     const uint64_t paths = input.map.header.emittedPaths();
@@ -157,7 +167,7 @@ ClassGather::ClassGather(const GatherInput& input, PhotonClass c, const GatherSe
     if (progressive.pilot == nullptr)
         cache_ = std::make_unique<IrradianceCache>(
             PhotonSource{index_, extent_, groups_.all(), groups_.size(), perPath_, reach_, input.scene.disperses()},
-            rule.irradiance);
+            rule_.irradiance);
 }
 
 DensityQuery ClassGather::densityQuery(const PhotonGatherQuery& query, GatherScratch& scratch) const {

@@ -52,7 +52,7 @@ struct ProgressiveRadius {
     float scale = 1;  // also of the width over which wavelengths count as one
 };
 
-// Of one class.
+// Of one class, for up to a million photons.
 struct RadiusRule {
     IrradianceRule irradiance;
     float reachAtMean = 0;     // photons of the class's mean density that the largest bandwidth holds
@@ -60,6 +60,11 @@ struct RadiusRule {
     float growthAtMean = 0;    // it grows at most to the radius that holds these at the class's mean density
     float footprintShare = 0;  // least radius over short side of the pixel's footprint
 };
+
+// The rule for a class of so many photons. The more there are, the more of them the largest bandwidths hold: by
+// N^(2/3), so that in two dimensions variance and squared bias fall alike (Silverman 1986, section 4.3). Were the count
+// fixed, variance would not fall.
+RadiusRule grown(RadiusRule rule, uint64_t photons);
 
 struct GatherSettings {
     IndexKind index = IndexKind::Kd;
