@@ -98,7 +98,7 @@ class RadiusSearch {
         Ring<kSignals> within;
         for (int level = 0;; ++level) {
             if (level == known) {
-                const int more = std::min(known + 2, kMostLevels);
+                const int more = std::min(known + (4 * within.count > rule_.mostCount ? 1 : 2), kMostLevels);
                 std::visit([&](const auto& index) { fillRings(index, known, more); }, source_.index);
                 known = more;
             }
