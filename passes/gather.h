@@ -118,6 +118,7 @@ class ClassGather {
     float reach_ = 0;      // m, of the largest bandwidth
     SurfaceExtent extent_;
     double perPath_ = 0;                      // 1 / emitted paths
+    BlockTable blocks_;                       // for the cache
     std::unique_ptr<IrradianceCache> cache_;  // filled while it is used
 };
 

@@ -26,13 +26,14 @@ struct Moments {
     double pp = 0, ppd2 = 0, ppd4 = 0;  // of power^2, times distance^2 and ^4
     Vec3 moment{0};                     // sum of power times offset from the middle
 
-    void add(double power, Vec3 offset, double d2) {
+    // squares: of the power of each photon, if there are several.
+    void add(double power, double squares, Vec3 offset, double d2) {
         moment += static_cast<float>(power) * offset;
         p += power;
         pd2 += power * d2;
-        pp += power * power;
-        ppd2 += power * power * d2;
-        ppd4 += power * power * d2 * d2;
+        pp += squares;
+        ppd2 += squares * d2;
+        ppd4 += squares * d2 * d2;
     }
     void add(const Moments& r) {
         p += r.p;
@@ -65,7 +66,15 @@ struct Ring {
 
     void add(const std::array<float, kSignals>& powers, Vec3 offset, double d2) {
         ++count;
-        for (size_t s = 0; s < kSignals; ++s) signals[s].add(static_cast<double>(powers[s]), offset, d2);
+        for (size_t s = 0; s < kSignals; ++s)
+            signals[s].add(static_cast<double>(powers[s]), square(static_cast<double>(powers[s])), offset, d2);
+    }
+    // A part of a block. d2: mean, by power.
+    void add(const BlockSums& b, float part, Vec3 offset, float d2) {
+        count += static_cast<double>(part * static_cast<float>(b.count));
+        const float power = part * b.total;
+        signals[0].add(static_cast<double>(power), static_cast<double>(part * b.totalSquared), offset,
+                       static_cast<double>(d2));
     }
     void add(const Ring& r) {
         count += r.count;
@@ -99,7 +108,8 @@ class RadiusSearch {
         for (int level = 0;; ++level) {
             if (level == known) {
                 const int more = std::min(known + (4 * within.count > rule_.mostCount ? 1 : 2), kMostLevels);
-                std::visit([&](const auto& index) { fillRings(index, known, more); }, source_.index);
+                if (within.count < kLeastOfBlocks || !fillByBlocks(known, more))
+                    std::visit([&](const auto& index) { fillRings(index, known, more); }, source_.index);
                 known = more;
             }
             const float r2 = r0_ * r0_ * static_cast<float>(1 << level);
@@ -154,9 +164,7 @@ class RadiusSearch {
         return true;
     }
 
-    Bandwidth atLevel(int level, double count) const {
-        return {r0_ * std::sqrt(static_cast<float>(1 << level)), static_cast<uint32_t>(count)};
-    }
+    Bandwidth atLevel(int level, double count) const { return {radiusOf(level), static_cast<uint32_t>(count)}; }
 
     template <typename Index>
     float distanceTo(const Index& index, uint32_t count) {
@@ -165,23 +173,73 @@ class RadiusSearch {
         return gatherPhotons(index, query, scratch_.density, [](uint32_t, float) {}).radius;
     }
 
-    // Levels [from, to): what lies between r0 2^((level-1)/2) and r0 2^(level/2); level 0: all within r0.
+    float radiusOf(int level) const { return r0_ * std::sqrt(static_cast<float>(1 << level)); }
+    // 0: within r0; l: between r0 2^((l-1)/2) and r0 2^(l/2).
+    int levelOf(float entrySquared) const {
+        const float ratio = entrySquared / (r0_ * r0_);
+        return ratio < 1 ? 0 : static_cast<int>(std::bit_cast<uint32_t>(ratio) >> 23) - 126;  // 1 + log2
+    }
+
+    // Levels [from, to).
     template <typename Index>
     void fillRings(const Index& index, int from, int to) {
-        const float radius = std::min(r0_ * std::sqrt(static_cast<float>(1 << (to - 1))), query_.maxRadius);
+        const float radius = std::min(radiusOf(to - 1), query_.maxRadius);
         index.within(query_.point.position, radius, scratch_.density.found);
-        acceptPhotons(index.tree(), query_, radius, scratch_.density);
-        const float invR0Squared = 1 / (r0_ * r0_);
+        acceptPhotons(index.tree(), query_, radius, scratch_.density.found, scratch_.density.accepted);
+        addPhotons(from, to);
+    }
+
+    // What was filled before photon by photon ends at a circle; blocks that it cuts are filled so as well.
+    bool fillByBlocks(int from, int to) {
+        constexpr float kLargest = 0.45F;  // so that those reach into the next ring at most
+        const bool first = firstByBlocks_ < 0;
+        const int start = first ? from : firstByBlocks_;
+        const float radius = std::min(radiusOf(to - 1), query_.maxRadius), inner = radiusOf(start - 1);
+        const auto countsAsOne = [&](const BlockSums& sums, float distance) {
+            return sums.radius <= kLargest * inner && (!first || std::fabs(distance - inner) > sums.radius);
+        };
+        if (!acceptByBlocks(source_, photon_, query_, radius, scratch_, countsAsOne)) return false;
+        firstByBlocks_ = start;
+        for (const DensityScratch::Candidate& c : scratch_.acceptedBlocks) addBlock(c, from, to);
+        addPhotons(from, to);
+        return true;
+    }
+
+    // To each ring that it reaches the part that lies there, as if its photons were even between two circles.
+    void addBlock(const DensityScratch::Candidate& c, int from, int to) {
+        const uint32_t block = c.index / kBlockSize;
+        const BlockSums& sums = (*source_.blocks)[block];
+        if (!scratch_.surface.whole() && scratch_.surface.hides(sums.centre)) return;
+        const float distance = std::sqrt(c.entrySquared), offPlane = c.entrySquared - c.distanceSquared;
+        // Of a square of that spread, half along the way from the middle, half across it. What is off the plane enters
+        // as a whole.
+        const float wide = offPlane > 0 ? 0 : std::min(std::sqrt(1.5F * sums.spread), sums.radius);
+        const float half = std::max(wide, 1e-6F * distance), last = distance + half;
+        float begin = std::max(0.0F, distance - half);
+        for (int level = levelOf(square(begin)); level < to && begin < last; ++level) {
+            const float end = std::min(radiusOf(level), last);
+            if (level >= from && end > begin) {
+                const float middle = 0.5F * (begin + end), part = (end - begin) / (2 * half);
+                const float d2 = square(middle) - offPlane + square(end - begin) / 12 + 0.5F * sums.spread;
+                Ring<kSignals>& ring = rings_[static_cast<size_t>(level)];
+                ring.add(sums, part, (middle / distance) * (sums.centre - query_.point.position), d2);
+                if (part > 0.5F && isDense(source_.photons(), block)) ring.dense += sums.count;
+            }
+            begin = std::max(begin, end);
+        }
+    }
+
+    void addPhotons(int from, int to) {
+        const PhotonTreeView& tree = source_.photons();
         for (const DensityScratch::Candidate& c : scratch_.density.accepted) {
-            const float ratio = c.entrySquared * invR0Squared;
-            const int level = ratio < 1 ? 0 : static_cast<int>(std::bit_cast<uint32_t>(ratio) >> 23) - 126;  // 1 + log2
+            const int level = levelOf(c.entrySquared);
             if (level < from || level >= to || c.index == photon_) continue;
             if (source_.groups[c.index] >= source_.groupCount) continue;
-            if (!scratch_.surface.whole() && scratch_.surface.hides(index.tree().position(c.index))) continue;
+            if (!scratch_.surface.whole() && scratch_.surface.hides(tree.position(c.index))) continue;
             Ring<kSignals>& ring = rings_[static_cast<size_t>(level)];
-            ring.add(signalsOf<kSignals>(index.tree().payload[c.index]),
-                     index.tree().position(c.index) - query_.point.position, c.distanceSquared);
-            if (level > 0 && isDense(index.tree(), c.index / kBlockSize)) ++ring.dense;
+            ring.add(signalsOf<kSignals>(tree.payload[c.index]), tree.position(c.index) - query_.point.position,
+                     c.distanceSquared);
+            if (level > 0 && isDense(tree, c.index / kBlockSize)) ++ring.dense;
         }
     }
 
@@ -206,7 +264,8 @@ class RadiusSearch {
     const BandwidthRule& rule_;
     BandwidthScratch& scratch_;
     DensityQuery query_;
-    float r0_ = 0;  // m
+    float r0_ = 0;            // m
+    int firstByBlocks_ = -1;  // the first level that was filled by blocks
     uint32_t lastBlock_ = ~0U;
     bool lastIsDense_ = false;
     std::array<Ring<kSignals>, kMostLevels> rings_{};

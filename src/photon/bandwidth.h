@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "photon/block_sums.h"
 #include "photon/density.h"
 #include "photon/surface_extent.h"
 
@@ -13,11 +14,12 @@ namespace lsde {
 struct PhotonSource {
     const AnyIndex& index;
     const SurfaceExtent& extent;
-    std::span<const uint16_t> groups;  // of each photon (path/path_groups.h)
-    size_t groupCount = 0;             // photons of higher groups do not take part
-    double perPath = 0;                // 1 / emitted paths
-    float maxRadius = 0;               // m, of an estimate
-    bool dispersed = false;            // some photons have a wavelength: colours are to be kept apart
+    std::span<const uint16_t> groups;    // of each photon (path/path_groups.h)
+    size_t groupCount = 0;               // photons of higher groups do not take part
+    double perPath = 0;                  // 1 / emitted paths
+    float maxRadius = 0;                 // m, of an estimate
+    bool dispersed = false;              // some photons have a wavelength: colours are to be kept apart
+    const BlockTable* blocks = nullptr;  // null: all is summed photon by photon
 
     const PhotonTreeView& photons() const {
         return std::visit([](const auto& i) -> const PhotonTreeView& { return i.tree(); }, index);
@@ -33,12 +35,48 @@ struct BandwidthRule {
 // The query at a photon's place, on the side on which it landed, with the source's largest radius.
 DensityQuery queryAt(const PhotonSource& source, uint32_t photon);
 
+// Discs of fewer photons are summed photon by photon; wider ones by blocks where they may be.
+inline constexpr uint32_t kLeastOfBlocks = 256;
+
 struct BandwidthScratch {
-    DensityScratch density;  // accepted: afterwards all that lie within the bandwidth, and some more
-    SurfaceAround surface;   // about the photon
+    DensityScratch density;         // accepted: afterwards all that lie within the bandwidth, and some more, if few
+    SurfaceAround surface;          // about the photon
+    ScratchList<uint32_t> touched;  // blocks
+    NeighbourList blocks;           // by their first photons
+    ScratchList<DensityScratch::Candidate> acceptedBlocks;
     // Records that another thread is just making: that of a place, and one of its neighbours.
     std::vector<Rgb> irradiance, neighbour;
 };
+
+// Sorts what lies within the radius of the photon, about which scratch.surface is: blocks that count as one by their
+// first photons, with the distance of their centres, into scratch.acceptedBlocks, all other photons into
+// scratch.density.accepted. countsAsOne(sums, distance of the centre) is asked of blocks whose photons are alike.
+// False, and nothing is done: there is no table.
+template <typename CountsAsOne>
+bool acceptByBlocks(const PhotonSource& source, uint32_t photon, const DensityQuery& query, float radius,
+                    BandwidthScratch& scratch, const CountsAsOne& countsAsOne) {
+    if (source.blocks == nullptr) return false;
+    // Whichever index is asked for single photons, the blocks are those of the tree.
+    const KdIndex index(source.photons());
+    const Vec3 centre = query.point.position;
+    index.blocksWithin(centre, radius, scratch.touched);
+    scratch.blocks.clear();
+    scratch.density.found.clear();
+    for (const uint32_t block : scratch.touched) {
+        const BlockSums& sums = (*source.blocks)[block];
+        const float distanceSquared = lengthSquared(sums.centre - centre);
+        const bool split =
+            !scratch.surface.whole() && sums.alike() && scratch.surface.creaseNear(sums.centre, sums.radius);
+        // The photon's own block holds it, which does not count like the others.
+        if (sums.alike() && !split && block != photon / kBlockSize && countsAsOne(sums, std::sqrt(distanceSquared)))
+            scratch.blocks.push({block * kBlockSize, distanceSquared});
+        else
+            index.appendWithin(block, centre, radius, scratch.density.found);
+    }
+    acceptPhotons(index.tree(), query, 2 * radius, scratch.blocks, scratch.acceptedBlocks);
+    acceptPhotons(index.tree(), query, radius, scratch.density.found, scratch.density.accepted);
+    return true;
+}
 
 struct Bandwidth {
     float radius = 0;    // m

@@ -94,17 +94,18 @@ float firstRadius(const PhotonTreeView& tree, const DensityQuery& query, const D
     return guessRadius(tree, query.point.position, query.minCount);
 }
 
-void acceptPhotons(const PhotonTreeView& tree, const DensityQuery& query, float radius, DensityScratch& scratch) {
-    scratch.accepted.clear();
-    DensityScratch::Candidate* const begin = scratch.accepted.room(scratch.found.size());
+void acceptPhotons(const PhotonTreeView& tree, const DensityQuery& query, float radius, const NeighbourList& found,
+                   ScratchList<DensityScratch::Candidate>& accepted) {
+    accepted.clear();
+    DensityScratch::Candidate* const begin = accepted.room(found.size());
     DensityScratch::Candidate* end = begin;
     PhotonFilter filter(query);
-    for (const Neighbour& n : scratch.found) {
+    for (const Neighbour& n : found) {
         if (!filter.accepts(tree.payload[n.index])) continue;
         *end = {n.index, n.distanceSquared, filter.entrySquared(tree.position(n.index), n.distanceSquared)};
         if (end->entrySquared < radius * radius) ++end;
     }
-    scratch.accepted.resizeWithin(static_cast<size_t>(end - begin));
+    accepted.resizeWithin(static_cast<size_t>(end - begin));
 }
 
 float radiusSquaredHolding(uint32_t count, float radius, DensityScratch& scratch) {

@@ -51,13 +51,14 @@ struct DensityScratch {
 // A radius for the first search that holds, if all is well, query.minCount photons and few more.
 float firstRadius(const PhotonTreeView& tree, const DensityQuery& query, const DensityScratch& scratch);
 
-// scratch.found -> scratch.accepted: the photons that count at the query's point in a disc of the given radius (m).
+// found -> accepted: the photons that count at the query's point in a disc of the given radius (m).
 //
 // Left out are those of another medium, without the flags, on a surface turned away by more than 45 degrees (so the
 // other side of a sheet too), or lit from the other side; and those beyond the plane's thickness, a share of the
 // radius: then photons on a step or a ledge below never count, however small the radius. They enter when the radius
 // grows.
-void acceptPhotons(const PhotonTreeView& tree, const DensityQuery& query, float radius, DensityScratch& scratch);
+void acceptPhotons(const PhotonTreeView& tree, const DensityQuery& query, float radius, const NeighbourList& found,
+                   ScratchList<DensityScratch::Candidate>& accepted);
 
 // Square of the smallest radius that holds `count` of the accepted (the last one on its rim), all closer than `radius`.
 float radiusSquaredHolding(uint32_t count, float radius, DensityScratch& scratch);
@@ -91,7 +92,7 @@ GatheredDisc gatherPhotons(const Index& index, const DensityQuery& query, Densit
     if (query.minCount > 0 && least < most) radius = std::clamp(firstRadius(index.tree(), query, scratch), least, most);
     for (;;) {
         index.within(query.point.position, radius, scratch.found);
-        acceptPhotons(index.tree(), query, radius, scratch);
+        acceptPhotons(index.tree(), query, radius, scratch.found, scratch.accepted);
         if (scratch.accepted.size() >= query.minCount || !(radius < most)) break;
         radius = std::min(most, grownRadius(radius, query.minCount, scratch.accepted.size()));
     }

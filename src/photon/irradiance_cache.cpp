@@ -2,6 +2,7 @@
 
 #include <array>
 #include <bit>
+#include <numeric>
 
 #include "base/hash.h"
 #include "base/ray.h"
@@ -35,7 +36,8 @@ constexpr size_t kNeighbours = 4;
 // they are asked by area, and runs of little light are large: that takes away about one (measured: 1.2 of 500).
 constexpr float kOwnWeight = 0.5F;
 
-// Records of a run: of its middle photon, and of one on the other side, if the surface is a sheet lit from both.
+// Records of a run: of its middle photon, and of one on the other side, if the surface is a sheet lit from both. Those
+// of the other side follow all of the first: memory that is not asked for is not taken.
 constexpr size_t kSides = 2;
 
 // Photons that tell where a record's light came from, about.
@@ -88,9 +90,38 @@ void IrradianceCache::make(Record& record, const BandwidthRule& rule, std::span<
     record.variance = Rgb(0);
     record.arriving = Vec3(0);
     if (record.bandwidth.count < smoothCount_) return;
-    const float radiusSquared = square(record.bandwidth.radius);
+    const float radius = record.bandwidth.radius, radiusSquared = square(radius);
+    Vec3 arriving(0);
     float asked = 0;  // power of the photons that tell the direction
+    const auto ask = [&](const PhotonPayload& p, float weight) {
+        const float power = maxComponent(unpackPower(p.power)) * weight;
+        arriving += power * overCosine(p);
+        asked += power;
+    };
+    const auto sum = [](std::span<const Rgb> powers) { return std::accumulate(powers.begin(), powers.end(), Rgb(0)); };
     const uint32_t each = 1 + record.bandwidth.count / kDirections;
+    const bool byBlocks =
+        record.bandwidth.count >= kLeastOfBlocks &&
+        acceptByBlocks(source_, record.photon, queryAt(source_, record.photon), radius, scratch,
+                       [&](const BlockSums& sums, float distance) { return distance + sums.radius < radius; });
+    if (byBlocks) {
+        const uint32_t eachBlock = 1 + each / kBlockSize;
+        uint32_t number = 0;
+        for (const DensityScratch::Candidate& c : scratch.acceptedBlocks) {
+            const uint32_t block = c.index / kBlockSize;
+            const BlockSums& sums = (*source_.blocks)[block];
+            if (!(c.entrySquared < radiusSquared)) continue;
+            if (!scratch.surface.whole() && scratch.surface.hides(sums.centre)) continue;
+            const float weight = epanechnikov(c.distanceSquared + sums.spread, radiusSquared);
+            const std::span<const Rgb> powers = source_.blocks->powers(block);
+            for (size_t g = 0; g < powers.size(); ++g) irradiance[g] += powers[g] * weight;
+            irradiance.back() += sum(powers) * weight;
+            record.variance += sums.powerSquared * square(weight);
+            // One photon for so many; below one for `each`.
+            const auto stands = static_cast<float>(kBlockSize * eachBlock) / static_cast<float>(each);
+            if (number++ % eachBlock == 0) ask(photons_.payload[c.index], weight * stands);
+        }
+    }
     uint32_t number = 0;
     for (const DensityScratch::Candidate& c : scratch.density.accepted) {
         const uint16_t group = source_.groups[c.index];
@@ -103,13 +134,10 @@ void IrradianceCache::make(Record& record, const BandwidthRule& rule, std::span<
         irradiance[group] += e;
         irradiance.back() += e;
         record.variance += e * e;
-        if (number++ % each != 0) continue;
-        const float power = maxComponent(unpackPower(p.power)) * weight;
-        record.arriving += power * overCosine(p);
-        asked += power;
+        if (number++ % each == 0) ask(p, weight);
     }
-    if (asked > 0) record.arriving /= asked;
-    const auto scale = static_cast<float>(source_.perPath) / scratch.surface.share(record.bandwidth.radius);
+    if (asked > 0) record.arriving = arriving / asked;
+    const auto scale = static_cast<float>(source_.perPath) / scratch.surface.share(radius);
     for (Rgb& e : irradiance) e *= scale;
     record.variance *= square(scale);
 }
@@ -166,12 +194,12 @@ bool IrradianceCache::answers(Level& level, size_t run, const DensityQuery& quer
     const uint64_t end = std::min(first + level.photonsPerRecord, photons_.count);
     if (first >= end) return false;
     auto photon = static_cast<uint32_t>((first + end) / 2);
-    size_t slot = kSides * run;
+    size_t slot = run;
     const Vec3 side = landedSide(photons_.payload[photon]);
     if (glm::dot(side, query.sideNormal) < -kSameDirection) {
         photon = firstOnOtherSide(photon, static_cast<uint32_t>(end), side);
         if (photon == end) return false;
-        ++slot;
+        slot += level.states.size() / kSides;
     }
     if (!sameSurface(query, photon, scratch)) return false;
     record.photon = photon;

@@ -22,13 +22,21 @@ constexpr size_t kRun = 16;
 // Blocks looked ahead of the one at work: about the time that memory takes.
 constexpr size_t kAhead = 6;
 
-// All photons in a sphere, level by level: first all nodes of a level that it touches, then all of the next. Unlike a
-// walk to one leaf after the other, this asks memory for many nodes at once, and branches little.
+// All blocks that a sphere touches, level by level: first all nodes of a level that it touches, then all of the next.
+// Unlike a walk to one leaf after the other, this asks memory for many nodes at once, and branches little. Takes
+// several blocks at a time: take(span of their numbers).
+template <typename Take>
 class SphereSearch {
   public:
-    SphereSearch(const PhotonTreeView& tree, const KdShape& shape, const lanes::Sphere8& sphere, NeighbourList& out)
-        : tree_(tree), shape_(shape), sphere_(sphere), out_(out) {}
+    SphereSearch(const PhotonTreeView& tree, const KdShape& shape, const lanes::Sphere8& sphere, const Take& take)
+        : tree_(tree), shape_(shape), sphere_(sphere), take_(take) {}
 
+    void run() {
+        const uint32_t root = 0;
+        descend(static_cast<size_t>(shape_.levels) - 1, {&root, 1});
+    }
+
+  private:
     void descend(size_t level, std::span<const uint32_t> nodes) {
         const KdNode* const levelNodes = tree_.nodes.data() + shape_.first[level];
         std::array<uint32_t, kNodeWidth * kRun> children;
@@ -40,7 +48,7 @@ class SphereSearch {
             }
             const std::span<const uint32_t> list(children.data(), end);
             if (level == 0) {
-                appendPhotons(list);
+                take_(list);
             } else {
                 const KdNode* const below = tree_.nodes.data() + shape_.first[level - 1];
                 for (const uint32_t node : list.first(std::min(kRun, list.size()))) lanes::prefetch(below[node]);
@@ -49,26 +57,19 @@ class SphereSearch {
         }
     }
 
-  private:
-    void appendPhotons(std::span<const uint32_t> blocks) {
-        for (const uint32_t b : blocks.first(std::min(kAhead, blocks.size()))) lanes::prefetch(tree_.blocks[b]);
-        Neighbour* const begin = out_.room(kBlockSize * blocks.size());
-        Neighbour* end = begin;
-        for (size_t i = 0; i < blocks.size(); ++i) {
-            if (i + kAhead < blocks.size()) lanes::prefetch(tree_.blocks[blocks[i + kAhead]]);
-            for (const uint32_t first : {0U, kBlockSize / 2}) {
-                const __m256 distance = lanes::distanceToPhotons(tree_.blocks[blocks[i]], first, sphere_);
-                end = lanes::append(end, kBlockSize * blocks[i] + first, distance, lanes::below(distance, sphere_));
-            }
-        }
-        out_.resizeWithin(out_.size() + static_cast<size_t>(end - begin));
-    }
-
     const PhotonTreeView& tree_;
     const KdShape& shape_;
     const lanes::Sphere8& sphere_;
-    NeighbourList& out_;
+    const Take& take_;
 };
+
+Neighbour* appendPhotons(const PhotonTreeView& tree, uint32_t block, const lanes::Sphere8& sphere, Neighbour* end) {
+    for (const uint32_t first : {0U, kBlockSize / 2}) {
+        const __m256 distance = lanes::distanceToPhotons(tree.blocks[block], first, sphere);
+        end = lanes::append(end, kBlockSize * block + first, distance, lanes::below(distance, sphere));
+    }
+    return end;
+}
 
 // Finds the block of the photon that is nearest to a point. That its box is near says little: boxes of photons on two
 // walls cover much that is empty.
@@ -154,8 +155,35 @@ void KdIndex::within(Vec3 centre, float radius, NeighbourList& out) const {
     // Against a coordinate that is not finite, empty boxes would not be infinitely far.
     if (shape_.levels == 0 || !isFinite(centre)) return;
     const lanes::Sphere8 sphere(centre.x, centre.y, centre.z, radius * radius);
-    const uint32_t root = 0;
-    SphereSearch(tree_, shape_, sphere, out).descend(static_cast<size_t>(shape_.levels) - 1, {&root, 1});
+    const auto take = [&](std::span<const uint32_t> blocks) {
+        for (const uint32_t b : blocks.first(std::min(kAhead, blocks.size()))) lanes::prefetch(tree_.blocks[b]);
+        Neighbour* const begin = out.room(kBlockSize * blocks.size());
+        Neighbour* end = begin;
+        for (size_t i = 0; i < blocks.size(); ++i) {
+            if (i + kAhead < blocks.size()) lanes::prefetch(tree_.blocks[blocks[i + kAhead]]);
+            end = appendPhotons(tree_, blocks[i], sphere, end);
+        }
+        out.resizeWithin(out.size() + static_cast<size_t>(end - begin));
+    };
+    SphereSearch(tree_, shape_, sphere, take).run();
+}
+
+void KdIndex::blocksWithin(Vec3 centre, float radius, ScratchList<uint32_t>& out) const {
+    out.clear();
+    if (shape_.levels == 0 || !isFinite(centre)) return;
+    const lanes::Sphere8 sphere(centre.x, centre.y, centre.z, radius * radius);
+    const auto take = [&](std::span<const uint32_t> blocks) {
+        std::copy(blocks.begin(), blocks.end(), out.room(blocks.size()));
+        out.resizeWithin(out.size() + blocks.size());
+    };
+    SphereSearch(tree_, shape_, sphere, take).run();
+}
+
+void KdIndex::appendWithin(uint32_t block, Vec3 centre, float radius, NeighbourList& out) const {
+    const lanes::Sphere8 sphere(centre.x, centre.y, centre.z, radius * radius);
+    Neighbour* const begin = out.room(kBlockSize);
+    const Neighbour* const end = appendPhotons(tree_, block, sphere, begin);
+    out.resizeWithin(out.size() + static_cast<size_t>(end - begin));
 }
 
 float KdIndex::reachOfAll(Vec3 centre) const {

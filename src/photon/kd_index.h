@@ -96,6 +96,9 @@ class KdIndex {
 
     // All photons with distanceSquared < radius^2, by ascending index; what was in `out` before is cleared.
     void within(Vec3 centre, float radius, NeighbourList& out) const;
+    // The numbers of the blocks whose boxes come that near, ascending; and, appended, the photons of one of them.
+    void blocksWithin(Vec3 centre, float radius, ScratchList<uint32_t>& out) const;
+    void appendWithin(uint32_t block, Vec3 centre, float radius, NeighbourList& out) const;
 
     // The k nearest that `accept(index)` takes, closer than maxRadius, sorted by distance, then index; fewer if there
     // are fewer.

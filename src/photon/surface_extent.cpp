@@ -223,4 +223,20 @@ bool SurfaceAround::hides(Vec3 p) const {
     return false;
 }
 
+bool SurfaceAround::creaseNear(Vec3 p, float distance) const {
+    const Vec3 q = frame_.toLocal(p - centre_);
+    if (std::sqrt(square(q.x) + square(q.y)) + distance < std::sqrt(nearestSquared_)) return false;
+    for (const Cuts& c : lanes_) {
+        int any = 0;
+        for (size_t i = 0; i < kLanes; ++i) {
+            const float dx = c.bx[i] - c.ax[i], dy = c.by[i] - c.ay[i], x = q.x - c.ax[i], y = q.y - c.ay[i];
+            const float along = (x * dx + y * dy) / std::max(dx * dx + dy * dy, 1e-30F);
+            const float t = std::min(std::max(along, 0.0F), 1.0F);
+            any |= static_cast<int>(square(x - t * dx) + square(y - t * dy) <= square(distance));
+        }
+        if (any != 0) return true;
+    }
+    return false;
+}
+
 }  // namespace lsde

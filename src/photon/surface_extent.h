@@ -22,6 +22,9 @@ class SurfaceAround {
     float share(float radius) const;
     // Whether a crease lies between the point and p.
     bool hides(Vec3 p) const;
+    // Whether a crease comes within the distance (m) of p. Of creases only what lies within the radius asked for
+    // counts.
+    bool creaseNear(Vec3 p, float distance) const;
 
   private:
     friend class SurfaceExtent;

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "photon/square.h"
+#include "support/statistics.h"
 
 using namespace lsde;
 using test::Random;
@@ -85,6 +86,7 @@ TEST_CASE("a bandwidth ends where the power of the photons changes and not their
     Square square(9, 20'000, 1);
     for (uint32_t i = 0; i < square.tree.count; ++i)
         if (positionOf(square, i).x > 0) square.tree.payload[i].power = packPower(Rgb(50, 100, 150), i);
+    square.sumBlocks();
     BandwidthScratch scratch;
     double reaching = 0, there = 0;
     for (uint32_t i = 0; i < square.tree.count; i += 10) {
@@ -130,6 +132,7 @@ TEST_CASE("a bandwidth ends where the colour of dispersed light changes, though 
     for (uint32_t i = 0; i < square.tree.count; ++i)
         square.tree.payload[i].wavelength = positionOf(square, i).x < 0 ? kBlue : red;
     square.index = AnyIndex(KdIndex(view(square.tree)));
+    square.sumBlocks();
     BandwidthScratch scratch;
     float beyond[2] = {0, 0};
     for (const bool dispersed : {false, true})
@@ -144,4 +147,31 @@ TEST_CASE("a bandwidth ends where the colour of dispersed light changes, though 
     MESSAGE("beyond the edge at most: ", beyond[0], " and ", beyond[1], " m");
     CHECK(beyond[0] > 0.05F);
     CHECK(beyond[1] < 0.02F);
+}
+
+TEST_CASE("block by block bandwidths are as wide as photon by photon") {
+    constexpr BandwidthRule kWide{20, 8000, 2.5F};
+    for (const float contrast : {1.0F, 1.4F}) {
+        test::Mean ratio, count;
+        int same = 0, compared = 0;
+        for (uint32_t seed = 20; seed < 25; ++seed) {
+            const Square square(seed, 40'000, contrast);
+            BandwidthScratch scratch;
+            for (uint32_t i = 0; i < square.tree.count; i += 100) {
+                const Vec3 p = positionOf(square, i);
+                if (std::max(std::fabs(p.x), std::fabs(p.y)) > 0.6F) continue;
+                const Bandwidth a = consistentBandwidth(square.source(2, true), i, kWide, scratch);
+                const Bandwidth b = consistentBandwidth(square.source(2, false), i, kWide, scratch);
+                ratio.add(std::log2(static_cast<double>(a.radius / b.radius)));
+                same += a.radius == b.radius ? 1 : 0;
+                ++compared;
+                if (a.radius == b.radius) count.add(static_cast<double>(a.count) / std::max(1U, b.count));
+            }
+        }
+        MESSAGE("contrast ", contrast, ": log2 of the ratio ", ratio.value(), ", the same ", same, " of ", compared);
+        CHECK(compared > 1000);
+        CHECK(std::fabs(ratio.value()) < 0.015);
+        CHECK(same > 0.85 * compared);
+        CHECK(count.value() == doctest::Approx(1).epsilon(0.003));
+    }
 }

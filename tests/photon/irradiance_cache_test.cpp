@@ -248,3 +248,43 @@ TEST_CASE("what the cache says depends neither on who asks first nor on the thre
         }
     }
 }
+
+TEST_CASE("block by block the irradiance, its groups and its direction are those photon by photon") {
+    // Least and most the same: the bandwidth is given, what differs is the sum.
+    constexpr IrradianceRule kGiven{{2000, 2000, 2.5F}, 300};
+    Square square(31, 20'000, 1.2F);
+    for (uint32_t i = 0; i < square.tree.count; ++i) {
+        const Vec3 p = view(square.tree).position(i);
+        square.tree.payload[i].power = packPower(Rgb(1 + p.x, 2 - p.y, 3), i);
+        square.tree.payload[i].direction = packDirection(glm::normalize(Vec3(0.5F + p.x, p.y, 1)));
+    }
+    square.sumBlocks();
+    const PhotonSource source = square.source(2, true), slow = square.source(2, false);
+    IrradianceCache blocks(source, kGiven), photons(slow, kGiven);
+    BandwidthScratch scratch;
+    Random random(1);
+    int known = 0;
+    test::Mean red, first;
+    for (int i = 0; i < 300; ++i) {
+        DensityQuery query = queryFrom({random.between(-0.5F, 0.5F), random.between(-0.5F, 0.5F), 0});
+        query.point.ns = glm::normalize(Vec3(0.05F, 0, 1));
+        const CachedLight a = blocks.at(query, true, scratch), b = photons.at(query, true, scratch);
+        REQUIRE(a.irradiance.size() == b.irradiance.size());
+        if (a.irradiance.empty()) continue;
+        ++known;
+        CHECK(a.radius == b.radius);
+        const auto sum = [](Rgb e) { return e.x + e.y + e.z; };
+        CHECK(sum(a.irradiance[2]) == doctest::Approx(sum(b.irradiance[2])).epsilon(1e-4));
+        // A block has one middle for all channels and groups: its parts are off by chance, by less than their error.
+        for (size_t g = 0; g < 3; ++g)
+            for (int c = 0; c < 3; ++c) CHECK(a.irradiance[g][c] == doctest::Approx(b.irradiance[g][c]).epsilon(0.015));
+        red.add(static_cast<double>(a.irradiance[2].x / b.irradiance[2].x));
+        first.add(static_cast<double>(a.irradiance[0].y / b.irradiance[0].y));
+        CHECK(a.variance.y == doctest::Approx(b.variance.y).epsilon(0.02));
+        CHECK(a.shading == doctest::Approx(b.shading).epsilon(0.01));
+    }
+    CHECK(known > 200);
+    MESSAGE("red ", red.value(), ", first group ", first.value());
+    CHECK(red.value() == doctest::Approx(1).epsilon(0.001));
+    CHECK(first.value() == doctest::Approx(1).epsilon(0.001));
+}

@@ -1,6 +1,8 @@
 // A lit square for tests of bandwidths and of what is cached of them.
 #pragma once
 
+#include <array>
+
 #include "photon/bandwidth.h"
 #include "photon/photons.h"
 
@@ -13,11 +15,18 @@ struct Square {
     AnyIndex index;
     SurfaceExtent extent;
     std::vector<uint16_t> groups;
+    std::array<BlockTable, 2> blocks;  // for one group, and for both
 
     // behind: photons a m2 that landed on the back.
     Square(uint32_t seed, float density, float contrast, float behind = 0)
         : tree(make(seed, density, contrast, behind)), index(KdIndex(view(tree))) {
         for (size_t i = 0; i < tree.count; ++i) groups.push_back(tree.payload[i].light);
+        sumBlocks();
+    }
+    // Again, after changes to the photons.
+    void sumBlocks() {
+        ThreadPool pool(1);
+        for (size_t i = 0; i < blocks.size(); ++i) blocks[i] = BlockTable(view(tree), groups, i + 1, pool);
     }
     static PhotonTree make(uint32_t seed, float density, float contrast, float behind) {
         Random random(seed);
@@ -36,7 +45,9 @@ struct Square {
             }
         return treeOf(photons);
     }
-    PhotonSource source(size_t groupCount = 2) const { return {index, extent, groups, groupCount, 1, 0.5F}; }
+    PhotonSource source(size_t groupCount = 2, bool byBlocks = true) const {
+        return {index, extent, groups, groupCount, 1, 0.5F, false, byBlocks ? &blocks[groupCount - 1] : nullptr};
+    }
 };
 
 }  // namespace lsde::test

@@ -73,6 +73,16 @@ TEST_CASE("a photon behind a crease is hidden, one before it or beside it is not
     CHECK(beside.hides({0.8F, -0.1F, 0}));
 }
 
+TEST_CASE("a crease is near what lies within the distance of it") {
+    const SurfaceAround surface = around({5, 0.2F, 0}, 0.5F);
+    CHECK(surface.creaseNear({5, 0.1F, 0}, 0.11F));
+    CHECK(!surface.creaseNear({5, 0.1F, 0}, 0.09F));
+    CHECK(surface.creaseNear({5, -0.1F, 0}, 0.11F));
+    CHECK(!surface.creaseNear({5, -0.1F, 0}, 0.09F));
+    CHECK(!surface.creaseNear({5.2F, 0.3F, 0}, 0.2F));
+    CHECK(!around({5, 5, 0}, 0.5F).creaseNear({5, 5.1F, 0}, 0.1F));
+}
+
 TEST_CASE("among thousands of creases those that cut the disc are found, and they alone") {
     test::Random random(21);
     const auto at = [&](float scale) {
