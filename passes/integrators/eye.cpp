@@ -56,7 +56,7 @@ class EyeIntegrator : public Integrator {
         s.quarterLights = true;
         // What a gather or a lamp adds may be a thousand times the pixel: seen by chance alone it would be a bright
         // dot.
-        s.rouletteThreshold = 5e-4F;
+        s.rouletteThreshold = s.splitThreshold = 2e-4F;
         return s;
     }
 
