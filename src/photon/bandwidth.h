@@ -73,6 +73,7 @@ bool acceptByBlocks(const PhotonSource& source, uint32_t photon, const DensityQu
         else
             index.appendWithin(block, centre, radius, scratch.density.found);
     }
+    // Also those whose centres lie beyond the radius and which reach into it.
     acceptPhotons(index.tree(), query, 2 * radius, scratch.blocks, scratch.acceptedBlocks);
     acceptPhotons(index.tree(), query, radius, scratch.density.found, scratch.density.accepted);
     return true;
