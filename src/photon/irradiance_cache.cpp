@@ -31,17 +31,35 @@ constexpr float kNear = 0.4F;
 // Blocks that may tell of each other: those of a run.
 constexpr size_t kNeighbours = 4;
 
-// Weight of the photon at which a record is. With it, which is there for certain, the mean over all photons would be
-// too high by two photons in the disc; without it, records are unbiased where each is asked as often as the other. But
-// they are asked by area, and runs of little light are large: that takes away about one (measured: 1.2 of 500).
-constexpr float kOwnWeight = 0.5F;
-
 // Records of a run: of its middle photon, and of one on the other side, if the surface is a sheet lit from both. Those
 // of the other side follow all of the first: memory that is not asked for is not taken.
 constexpr size_t kSides = 2;
 
+constexpr uint16_t kNoPhoton = 0xffff;
+
 // Photons that tell where a record's light came from, about.
 constexpr uint32_t kDirections = 64;
+
+// Of the photons [first, end) that count, the one nearest to the middle of their blocks' boxes. A record there lies
+// evenly among the points for which it stands; at one to a side (the middle one of their order is the first beyond the
+// tree's cut) all light that rises or falls would be moved that way. And where that middle lies has little to do with
+// how many photons are near it, so that records have no bias though each counts a photon that is there for certain.
+template <typename Counts>
+std::optional<uint32_t> nearestToMiddle(const PhotonTreeView& photons, uint32_t first, uint32_t end,
+                                        const Counts& counts) {
+    Bounds box;
+    for (uint32_t block = first / kBlockSize; block * kBlockSize < end; ++block) box.grow(boxOf(photons, block));
+    const Vec3 middle = box.centre();
+    std::optional<uint32_t> nearest;
+    float least = kInfinity;
+    for (uint32_t i = first; i < end; ++i) {
+        const float distanceSquared = lengthSquared(photons.position(i) - middle);
+        if (!(distanceSquared < least) || !counts(i)) continue;
+        least = distanceSquared;
+        nearest = i;
+    }
+    return nearest;
+}
 
 // Where a photon came from, over its cosine with the facet that it met: bounded along the surface.
 Vec3 overCosine(const PhotonPayload& p) {
@@ -75,6 +93,7 @@ IrradianceCache::IrradianceCache(const PhotonSource& source, const IrradianceRul
         level.rule = rule.bandwidth;
         level.rule.mostCount = std::min(level.rule.mostCount, mostCountOf(photonsPerRecord));
         const size_t slots = kSides * runs;
+        level.offsets = std::vector<std::atomic<uint16_t>>(slots);
         level.states = std::vector<std::atomic<uint8_t>>(slots);
         level.bandwidths = std::make_unique_for_overwrite<Bandwidth[]>(slots);
         level.irradiance = std::make_unique_for_overwrite<Rgb[]>(slots * (source.groupCount + 1));
@@ -128,8 +147,7 @@ void IrradianceCache::make(Record& record, const BandwidthRule& rule, std::span<
         if (group >= source_.groupCount || !(c.entrySquared < radiusSquared)) continue;
         if (!scratch.surface.whole() && scratch.surface.hides(photons_.position(c.index))) continue;
         const PhotonPayload& p = photons_.payload[c.index];
-        const float weight =
-            (c.index == record.photon ? kOwnWeight : 1) * epanechnikov(c.distanceSquared, radiusSquared);
+        const float weight = epanechnikov(c.distanceSquared, radiusSquared);
         const Rgb e = rgbPower(p) * weight;
         irradiance[group] += e;
         irradiance.back() += e;
@@ -180,33 +198,41 @@ bool IrradianceCache::sameSurface(const DensityQuery& query, uint32_t photon, Ba
     return scratch.surface.whole() || !scratch.surface.hides(there.point.position);
 }
 
-// Of [photon, end), or end: the first one that landed on the side which faces away from `side`.
-uint32_t IrradianceCache::firstOnOtherSide(uint32_t photon, uint32_t end, Vec3 side) const {
-    while (photon < end && !(glm::dot(landedSide(photons_.payload[photon]), side) < -kSameDirection)) ++photon;
-    return photon;
+std::optional<IrradianceCache::Place> IrradianceCache::placeOf(Level& level, size_t run, Vec3 sideNormal) const {
+    const auto first = static_cast<uint32_t>(run * level.photonsPerRecord);
+    const auto end = static_cast<uint32_t>(std::min<uint64_t>(first + level.photonsPerRecord, photons_.count));
+    const auto offsetOf = [&](size_t slot, const auto& counts) {
+        std::atomic<uint16_t>& kept = level.offsets[slot];
+        uint16_t coded = kept.load(std::memory_order_relaxed);
+        if (coded == 0) {  // not known yet
+            const std::optional<uint32_t> photon = nearestToMiddle(photons_, first, end, counts);
+            coded = photon ? static_cast<uint16_t>(*photon - first + 1) : kNoPhoton;
+            kept.store(coded, std::memory_order_relaxed);
+        }
+        return coded;
+    };
+    const uint32_t photon = first + offsetOf(run, [](uint32_t) { return true; }) - 1;
+    const Vec3 side = landedSide(photons_.payload[photon]);
+    if (!(glm::dot(side, sideNormal) < -kSameDirection)) return Place{photon, run};
+    const size_t slot = run + level.offsets.size() / kSides;
+    const uint16_t other =
+        offsetOf(slot, [&](uint32_t i) { return glm::dot(landedSide(photons_.payload[i]), side) < -kSameDirection; });
+    if (other == kNoPhoton) return std::nullopt;
+    return Place{first + other - 1, slot};
 }
 
 // Whether the run's record stands for the query's point. If not, it is the record all the same if it is of the query's
 // surface.
 bool IrradianceCache::answers(Level& level, size_t run, const DensityQuery& query, Record& record,
                               std::vector<Rgb>& spare, BandwidthScratch& scratch) {
-    const uint64_t first = run * level.photonsPerRecord;
-    const uint64_t end = std::min(first + level.photonsPerRecord, photons_.count);
-    if (first >= end) return false;
-    auto photon = static_cast<uint32_t>((first + end) / 2);
-    size_t slot = run;
-    const Vec3 side = landedSide(photons_.payload[photon]);
-    if (glm::dot(side, query.sideNormal) < -kSameDirection) {
-        photon = firstOnOtherSide(photon, static_cast<uint32_t>(end), side);
-        if (photon == end) return false;
-        slot += level.states.size() / kSides;
-    }
-    if (!sameSurface(query, photon, scratch)) return false;
-    record.photon = photon;
+    if (run * level.photonsPerRecord >= photons_.count) return false;
+    const std::optional<Place> place = placeOf(level, run, query.sideNormal);
+    if (!place || !sameSurface(query, place->photon, scratch)) return false;
+    record.photon = place->photon;
     record.photonsPerRecord = level.photonsPerRecord;
-    recordOf(level, slot, record, spare, scratch);
+    recordOf(level, place->slot, record, spare, scratch);
     return record.bandwidth.count >= kRunsInDisc * level.photonsPerRecord &&
-           glm::length(query.point.position - photons_.position(photon)) < kNear * record.bandwidth.radius;
+           glm::length(query.point.position - photons_.position(record.photon)) < kNear * record.bandwidth.radius;
 }
 
 bool IrradianceCache::nearest(const DensityQuery& query, Vec3 p, Record& record, BandwidthScratch& scratch) {

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "photon/bandwidth.h"
@@ -31,8 +32,8 @@ struct CachedLight {
     float shading = 1;
 };
 
-// Records at photons in the middle of runs of the tree's blocks: few where light is smooth, one in each block where it
-// is not. They are functions of the map alone: who asks first, and from which thread, changes nothing.
+// Records at photons about the middle of runs of the tree's blocks: few where light is smooth, one in each block where
+// it is not. They are functions of the map alone: who asks first, and from which thread, changes nothing.
 class IrradianceCache {
   public:
     IrradianceCache(const PhotonSource& source, const IrradianceRule& rule);
@@ -56,6 +57,7 @@ class IrradianceCache {
     struct Level {
         uint32_t photonsPerRecord = 0;
         BandwidthRule rule;
+        std::vector<std::atomic<uint16_t>> offsets;  // of the record's photon in its run, coded (placeOf)
         std::vector<std::atomic<uint8_t>> states;
         std::unique_ptr<Bandwidth[]> bandwidths;
         std::unique_ptr<Rgb[]> irradiance;  // of slot i and group g: [i * (groups + 1) + g]
@@ -67,8 +69,13 @@ class IrradianceCache {
     // False: none of the query's surface is near p.
     bool nearest(const DensityQuery& query, Vec3 p, Record& record, BandwidthScratch& scratch);
     bool sameSurface(const DensityQuery& query, uint32_t photon, BandwidthScratch& scratch) const;
+    struct Place {
+        uint32_t photon = 0;
+        size_t slot = 0;
+    };
+    // Where the run has its record for that side; nowhere, if none of its photons landed there.
+    std::optional<Place> placeOf(Level& level, size_t run, Vec3 sideNormal) const;
     // Into `spare` where another thread is just making it.
-    uint32_t firstOnOtherSide(uint32_t photon, uint32_t end, Vec3 side) const;
     void recordOf(Level& level, size_t slot, Record& record, std::vector<Rgb>& spare, BandwidthScratch& scratch);
     // Fills the record of its photon, all but the span: what that refers to is `irradiance`.
     void make(Record& record, const BandwidthRule& rule, std::span<Rgb> irradiance, BandwidthScratch& scratch) const;

@@ -129,16 +129,8 @@ class BlockSearch {
     Found found_;
 };
 
-std::array<float, 3> sidesOf(const PhotonTreeView& tree, uint32_t block) {
-    const KdNode& node = tree.nodes[KdShape(tree.count).first[0] + block / kNodeWidth];
-    const uint32_t lane = block % kNodeWidth;
-    return {node.hiX[lane] - node.loX[lane], node.hiY[lane] - node.loY[lane], node.hiZ[lane] - node.loZ[lane]};
-}
-
 // Of a box of photons, which lie on surfaces: its two longer sides span their area, or somewhat more than that.
-float areaOf(const std::array<float, 3>& side) {
-    return std::max({side[0] * side[1], side[0] * side[2], side[1] * side[2]});
-}
+float areaOf(Vec3 side) { return std::max({side.x * side.y, side.x * side.z, side.y * side.z}); }
 
 }  // namespace
 
@@ -191,17 +183,23 @@ float KdIndex::reachOfAll(Vec3 centre) const {
     return std::max(1.0001F * glm::length(farthest), kLeastRadius);  // above all roundings
 }
 
-float boxArea(const PhotonTreeView& tree, uint32_t block) { return areaOf(sidesOf(tree, block)); }
+Bounds boxOf(const PhotonTreeView& tree, uint32_t block) {
+    const KdNode& node = tree.nodes[KdShape(tree.count).first[0] + block / kNodeWidth];
+    const uint32_t lane = block % kNodeWidth;
+    return {{node.loX[lane], node.loY[lane], node.loZ[lane]}, {node.hiX[lane], node.hiY[lane], node.hiZ[lane]}};
+}
+
+float boxArea(const PhotonTreeView& tree, uint32_t block) { return areaOf(boxOf(tree, block).extent()); }
 
 uint32_t nearestBlock(const PhotonTreeView& tree, Vec3 p) { return BlockSearch(tree, p).run().block; }
 
 float guessRadius(const PhotonTreeView& tree, Vec3 centre, uint32_t count) {
     if (tree.count == 0 || !isFinite(centre)) return 1;
     const BlockSearch::Found found = BlockSearch(tree, centre).guess();
-    const std::array<float, 3> side = sidesOf(tree, found.block);
+    const Vec3 side = boxOf(tree, found.block).extent();
     const float disc = std::sqrt(kSurplus * static_cast<float>(count) * areaOf(side) / (kPi * kBlockSize));
     // Without area (one photon, or all in a row), any positive number will do, and grows.
-    const float least = 1e-3F * (side[0] + side[1] + side[2]) + 1e-6F * tree.bounds.radius() + kLeastRadius;
+    const float least = 1e-3F * (side.x + side.y + side.z) + 1e-6F * tree.bounds.radius() + kLeastRadius;
     return std::sqrt(found.distanceSquared) + std::max(disc, least);
 }
 

@@ -82,6 +82,7 @@ Bounds boundsOf(const KdNode& node);
 
 // The block of the photon nearest to p. The tree is not empty, p is finite.
 uint32_t nearestBlock(const PhotonTreeView& tree, Vec3 p);
+Bounds boxOf(const PhotonTreeView& tree, uint32_t block);
 // Of the block's box, by its two longer sides: photons lie on surfaces. m2.
 float boxArea(const PhotonTreeView& tree, uint32_t block);
 // A positive radius that holds perhaps somewhat more than `count` photons, by the density of a block near by.
