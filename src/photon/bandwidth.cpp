@@ -3,6 +3,9 @@
 #include <array>
 #include <bit>
 
+#include "photon/denser_blocks.h"
+#include "photon/power_moments.h"
+
 namespace lsde {
 
 namespace {
@@ -13,55 +16,15 @@ constexpr double kRingTolerance = 3;
 // And by which the power in a disc may lie to one side. Brightness that rises steadily lies there as well, without
 // harm; half a disc in the dark is plainer than that. Where colours meet, each channel changes by a part only.
 constexpr double balanceTolerance(size_t signals) { return signals == 1 ? 5 : 3; }
-// Photons whose own block of the tree is this many times as dense as the smallest disc belong to something else, beyond
-// an edge. A few of them are no chance: a block's density has an error of a quarter.
-constexpr float kDense = 4;
+// A few photons of blocks far denser than the smallest disc are no chance: they belong to something else, beyond an
+// edge.
 constexpr uint32_t kFewDense = 3;
-// Cosine between the sides on which photons landed, below which they lie on the two sides of one sheet.
-constexpr float kOtherSide = -0.9F;
-
-// Moments of the power of photons.
-struct Moments {
-    double p = 0, pd2 = 0;              // sums of power, times distance^2
-    double pp = 0, ppd2 = 0, ppd4 = 0;  // of power^2, times distance^2 and ^4
-    Vec3 moment{0};                     // sum of power times offset from the middle
-
-    // squares: of the power of each photon, if there are several.
-    void add(double power, double squares, Vec3 offset, double d2) {
-        moment += static_cast<float>(power) * offset;
-        p += power;
-        pd2 += power * d2;
-        pp += squares;
-        ppd2 += squares * d2;
-        ppd4 += squares * d2 * d2;
-    }
-    void add(const Moments& r) {
-        p += r.p;
-        pd2 += r.pd2;
-        pp += r.pp;
-        ppd2 += r.ppd2;
-        ppd4 += r.ppd4;
-        moment += r.moment;
-    }
-};
-
-// What the power of a photon is judged by: the sum of its channels, or each of them.
-template <size_t kSignals>
-std::array<float, kSignals> signalsOf(const PhotonPayload& p) {
-    if constexpr (kSignals == 1) {
-        const Rgb power = unpackPower(p.power);
-        return {power.x + power.y + power.z};
-    } else {
-        const Rgb power = rgbPower(p);
-        return {power.x, power.y, power.z};
-    }
-}
 
 // The photons between one radius and the next smaller one.
 template <size_t kSignals>
 struct Ring {
     double count = 0;
-    uint32_t dense = 0;  // photons among many more than the estimate has, see kDense
+    uint32_t dense = 0;  // photons among many more than the estimate has, see DenserBlocks
     std::array<Moments, kSignals> signals;
 
     void add(const std::array<float, kSignals>& powers, Vec3 offset, double d2) {
@@ -82,17 +45,6 @@ struct Ring {
     }
 };
 
-struct Estimate {
-    double value = 0, variance = 0;
-};
-
-// By Epanechnikov's kernel, up to a factor that all radii share.
-Estimate estimateOf(const Moments& within, double r2, double share) {
-    const double scale = 1 / (r2 * share);
-    return {scale * (within.p - within.pd2 / r2),
-            scale * scale * (within.pp - 2 * within.ppd2 / r2 + within.ppd4 / (r2 * r2))};
-}
-
 template <size_t kSignals>
 class RadiusSearch {
   public:
@@ -102,6 +54,7 @@ class RadiusSearch {
     Bandwidth run() {
         source_.extent.around(query_.point.position, query_.point.ng, query_.maxRadius, scratch_.surface);
         r0_ = std::visit([&](const auto& index) { return distanceTo(index, rule_.leastCount); }, source_.index);
+        isDense_ = DenserBlocks(source_.photons(), query_.sideNormal, rule_.leastCount, r0_);
         if (r0_ >= query_.maxRadius) return {query_.maxRadius, static_cast<uint32_t>(scratch_.density.accepted.size())};
         int known = 0;
         Ring<kSignals> within;
@@ -223,7 +176,7 @@ class RadiusSearch {
                 const float d2 = square(middle) - offPlane + square(end - begin) / 12 + 0.5F * sums.spread;
                 Ring<kSignals>& ring = rings_[static_cast<size_t>(level)];
                 ring.add(sums, part, (middle / distance) * (sums.centre - query_.point.position), d2);
-                if (part > 0.5F && isDense(source_.photons(), block)) ring.dense += sums.count;
+                if (part > 0.5F && isDense_(block)) ring.dense += sums.count;
             }
             begin = std::max(begin, end);
         }
@@ -239,24 +192,8 @@ class RadiusSearch {
             Ring<kSignals>& ring = rings_[static_cast<size_t>(level)];
             ring.add(signalsOf<kSignals>(tree.payload[c.index]), tree.position(c.index) - query_.point.position,
                      c.distanceSquared);
-            if (level > 0 && isDense(tree, c.index / kBlockSize)) ++ring.dense;
+            if (level > 0 && isDense_(c.index / kBlockSize)) ++ring.dense;
         }
-    }
-
-    bool isDense(const PhotonTreeView& tree, uint32_t block) {
-        if (block == lastBlock_) return lastIsDense_;
-        lastBlock_ = block;
-        // So many photons in the block's area would be as dense.
-        const float many = kDense * static_cast<float>(rule_.leastCount) * boxArea(tree, block) / (kPi * r0_ * r0_);
-        return lastIsDense_ = kBlockSize > many && static_cast<float>(notBehind(tree, block)) > many;
-    }
-    // Photons of a block, less those on the back of a sheet without thickness.
-    uint32_t notBehind(const PhotonTreeView& tree, uint32_t block) const {
-        const uint64_t first = uint64_t{block} * kBlockSize, end = std::min(first + kBlockSize, tree.count);
-        uint32_t count = 0;
-        for (uint64_t i = first; i < end; ++i)
-            if (glm::dot(landedSide(tree.payload[i]), query_.sideNormal) > kOtherSide) ++count;
-        return count;
     }
 
     const PhotonSource& source_;
@@ -264,10 +201,9 @@ class RadiusSearch {
     const BandwidthRule& rule_;
     BandwidthScratch& scratch_;
     DensityQuery query_;
-    float r0_ = 0;            // m
+    float r0_ = 0;  // m
+    DenserBlocks isDense_;
     int firstByBlocks_ = -1;  // the first level that was filled by blocks
-    uint32_t lastBlock_ = ~0U;
-    bool lastIsDense_ = false;
     std::array<Ring<kSignals>, kMostLevels> rings_{};
     std::array<std::array<Estimate, kMostLevels>, kSignals> estimates_;
 };
