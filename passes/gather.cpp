@@ -195,9 +195,9 @@ DensityQuery ClassGather::densityQuery(const PhotonGatherQuery& query, GatherScr
     return density;
 }
 
-float ClassGather::sharedVariance(const PhotonGatherQuery& query, Vec3 wo, float radius) {
+float ClassGather::sharedVariance(const PhotonGatherQuery& query, Vec3 wo, float area) {
     // The integral of Epanechnikov's kernel squared is that of an even one of 3/4 the area.
-    const float kernel = 0.75F * kPi * square(radius);
+    const float kernel = 0.75F * area;
     const float pixel = square(query.point.footprint) / std::max(0.01F, std::fabs(wo.z));
     return kernel / (kernel + pixel);
 }
@@ -212,16 +212,20 @@ bool ClassGather::known(const PhotonGatherQuery& query, DensityQuery& density, c
                       glm::dot(query.point.ng, query.point.ns) > kBentNormal;
     const CachedLight light = cache_->at(density, even, scratch.bandwidth);
     const float reach = reachOnSurface(query.point);
-    if (!light.irradiance.empty() && light.radius <= reach) {
+    if (!light.irradiance.empty() && light.over.length() <= reach) {
         const Rgb albedo = diffuse->albedo * (kInvPi * light.shading);
         for (size_t g = 0; g < groups_.size(); ++g)
             if (!isBlack(light.irradiance[g]))
                 scratch.light.paths.push_back({static_cast<uint16_t>(g), albedo * light.irradiance[g]});
         scratch.light.total = albedo * light.irradiance[groups_.size()];
-        scratch.light.variance = albedo * albedo * light.variance * sharedVariance(query, wo, light.radius);
+        scratch.light.variance = albedo * albedo * light.variance * sharedVariance(query, wo, light.over.area());
         return true;
     }
     density.minRadius = std::max(density.minRadius, std::min(light.bandwidth.radius, reach));
+    // Where the pixel's footprint is wider, it is as long.
+    const float length = std::min(light.bandwidth.length(), reach);
+    if (light.bandwidth.along != Vec3(0) && length > density.minRadius)
+        density.along = glm::normalize(light.bandwidth.along) * std::sqrt(1 - square(density.minRadius / length));
     return false;
 }
 
@@ -238,6 +242,8 @@ const GatheredLight& ClassGather::gather(const PhotonGatherQuery& query, const B
     extent_.around(query.point.position, query.point.ng, std::max(density.minRadius, density.maxRadius),
                    scratch.surface);
     density.balanced = surface.whole();
+    if (!surface.whole() && surface.creaseNear(query.point.position, density.minRadius * stretchOf(density.along)))
+        density.along = Vec3(0);
     const auto* diffuse = std::get_if<DiffuseBsdf>(&bsdf);
     const bool flat = diffuse != nullptr && glm::dot(query.point.ng, query.point.ns) > kFlat;
     const Receiver receiver{query, bsdf, frame, wo, glossyLobePasses(bsdf), packNormal(query.point.ng)};
@@ -275,7 +281,7 @@ const GatheredLight& ClassGather::gather(const PhotonGatherQuery& query, const B
         g.glossy *= perPath;
     }
     out.total = total.diffuse * scale + total.glossy * perPath;
-    out.variance = squares * square(scale) * sharedVariance(query, wo, disc.radius);
+    out.variance = squares * square(scale) * sharedVariance(query, wo, kPi * square(disc.radius) * disc.stretch);
     return out;
 }
 

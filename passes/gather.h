@@ -101,9 +101,9 @@ class ClassGather {
                                 GatherScratch& scratch) const;
 
   private:
-    // What a pixel's samples, spread over its footprint, have of the variance of one of them, with a kernel of a radius
-    // (m): about the share of the kernel's area in both together.
-    static float sharedVariance(const PhotonGatherQuery& query, Vec3 wo, float radius);
+    // What a pixel's samples, spread over its footprint, have of the variance of one of them, with a kernel of an area
+    // (m2): about its share in both together.
+    static float sharedVariance(const PhotonGatherQuery& query, Vec3 wo, float area);
     DensityQuery densityQuery(const PhotonGatherQuery& query, GatherScratch& scratch) const;
     bool known(const PhotonGatherQuery& query, DensityQuery& density, const Bsdf& bsdf, Vec3 wo,
                GatherScratch& scratch) const;

@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "photon/denser_blocks.h"
+#include "photon/elongation.h"
 #include "photon/power_moments.h"
 
 namespace lsde {
@@ -51,11 +52,15 @@ class RadiusSearch {
     RadiusSearch(const PhotonSource& source, uint32_t photon, const BandwidthRule& rule, BandwidthScratch& scratch)
         : source_(source), photon_(photon), rule_(rule), scratch_(scratch), query_(queryAt(source, photon)) {}
 
+    // Whether what ended the search was the light.
+    bool atEdge() const { return atEdge_; }
+
     Bandwidth run() {
         source_.extent.around(query_.point.position, query_.point.ng, query_.maxRadius, scratch_.surface);
         r0_ = std::visit([&](const auto& index) { return distanceTo(index, rule_.leastCount); }, source_.index);
         isDense_ = DenserBlocks(source_.photons(), query_.sideNormal, rule_.leastCount, r0_);
         if (r0_ >= query_.maxRadius) return {query_.maxRadius, static_cast<uint32_t>(scratch_.density.accepted.size())};
+        atEdge_ = true;
         int known = 0;
         Ring<kSignals> within;
         for (int level = 0;; ++level) {
@@ -79,7 +84,10 @@ class RadiusSearch {
             if (!consistent(level)) return atLevel(level - 1, within.count - ring.count);
             const bool last = level + 1 == kMostLevels || 2 * r2 > square(query_.maxRadius) ||
                               2 * within.count > static_cast<double>(rule_.mostCount);
-            if (last) return atLevel(level, within.count);
+            if (last) {
+                atEdge_ = false;
+                return atLevel(level, within.count);
+            }
         }
     }
 
@@ -163,7 +171,7 @@ class RadiusSearch {
         const uint32_t block = c.index / kBlockSize;
         const BlockSums& sums = (*source_.blocks)[block];
         if (!scratch_.surface.whole() && scratch_.surface.hides(sums.centre)) return;
-        const float distance = std::sqrt(c.entrySquared), offPlane = c.entrySquared - c.distanceSquared;
+        const float distance = std::sqrt(c.entrySquared()), offPlane = c.entrySquared() - c.distanceSquared;
         // Of a square of that spread, half along the way from the middle, half across it. What is off the plane enters
         // as a whole.
         const float wide = offPlane > 0 ? 0 : std::min(std::sqrt(1.5F * sums.spread), sums.radius);
@@ -185,7 +193,7 @@ class RadiusSearch {
     void addPhotons(int from, int to) {
         const PhotonTreeView& tree = source_.photons();
         for (const DensityScratch::Candidate& c : scratch_.density.accepted) {
-            const int level = levelOf(c.entrySquared);
+            const int level = levelOf(c.entrySquared());
             if (level < from || level >= to || c.index == photon_) continue;
             if (source_.groups[c.index] >= source_.groupCount) continue;
             if (!scratch_.surface.whole() && scratch_.surface.hides(tree.position(c.index))) continue;
@@ -202,11 +210,19 @@ class RadiusSearch {
     BandwidthScratch& scratch_;
     DensityQuery query_;
     float r0_ = 0;  // m
+    bool atEdge_ = false;
     DenserBlocks isDense_;
     int firstByBlocks_ = -1;  // the first level that was filled by blocks
     std::array<Ring<kSignals>, kMostLevels> rings_{};
     std::array<std::array<Estimate, kMostLevels>, kSignals> estimates_;
 };
+
+template <size_t kSignals>
+Bandwidth search(const PhotonSource& source, uint32_t photon, const BandwidthRule& rule, BandwidthScratch& scratch) {
+    RadiusSearch<kSignals> radii(source, photon, rule, scratch);
+    const Bandwidth disc = radii.run();
+    return radii.atEdge() && !source.dispersed ? elongated(source, photon, disc, rule, scratch) : disc;
+}
 
 }  // namespace
 
@@ -225,8 +241,7 @@ DensityQuery queryAt(const PhotonSource& source, uint32_t photon) {
 
 Bandwidth consistentBandwidth(const PhotonSource& source, uint32_t photon, const BandwidthRule& rule,
                               BandwidthScratch& scratch) {
-    if (source.dispersed) return RadiusSearch<3>(source, photon, rule, scratch).run();
-    return RadiusSearch<1>(source, photon, rule, scratch).run();
+    return source.dispersed ? search<3>(source, photon, rule, scratch) : search<1>(source, photon, rule, scratch);
 }
 
 }  // namespace lsde

@@ -79,9 +79,19 @@ bool acceptByBlocks(const PhotonSource& source, uint32_t photon, const DensityQu
     return true;
 }
 
+// A disc; or, where light is even in one direction only, an ellipse of that direction: where the norm |x|^2 -
+// (along.x)^2 of the offset from its middle is below the radius, which is its half width.
 struct Bandwidth {
     float radius = 0;    // m
     uint32_t count = 0;  // photons within it
+    Vec3 along{0};       // of length sqrt(1 - 1 / stretch^2)
+
+    float stretch() const { return stretchOf(along); }      // length over width
+    float length() const { return radius * stretch(); }     // m, half of it
+    float area() const { return kPi * radius * length(); }  // m2
+    float distance(Vec3 offset) const {
+        return std::sqrt(std::max(0.0F, elongatedSquared(along, offset, lengthSquared(offset))));
+    }
 };
 
 // The largest of the radii r0, sqrt(2) r0, 2 r0, ... (r0: distance to photon number leastCount) whose estimate is
@@ -90,7 +100,7 @@ struct Bandwidth {
 // within lies to one side. Where
 // light is smooth the radius grows as long as it pays, at edges it stays small. The photon itself is left out: it is
 // there for certain. Power is the channels' sum; of dispersed light all must hold for each channel, since a rainbow may
-// be as bright throughout.
+// be as bright throughout. A disc that ended at an edge and holds few photons grows on along it (photon/elongation.h).
 Bandwidth consistentBandwidth(const PhotonSource& source, uint32_t photon, const BandwidthRule& rule,
                               BandwidthScratch& scratch);
 

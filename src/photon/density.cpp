@@ -26,10 +26,10 @@ class PhotonFilter {
         return (p.flags & mask_) == wanted_ && p.medium == query_.medium;
     }
 
-    float entrySquared(Vec3 position, float distanceSquared) const {
+    float planeSquared(Vec3 position) const {
         const float fromPlane = std::fabs(glm::dot(position - query_.point.position, query_.point.ng));
         // The rounding of positions makes no photon of this plane enter late.
-        return std::max(distanceSquared, square(std::max(0.0F, fromPlane - slack_) / kPlaneThickness));
+        return square(std::max(0.0F, fromPlane - slack_) / kPlaneThickness);
     }
 
   private:
@@ -102,8 +102,8 @@ void acceptPhotons(const PhotonTreeView& tree, const DensityQuery& query, float 
     PhotonFilter filter(query);
     for (const Neighbour& n : found) {
         if (!filter.accepts(tree.payload[n.index])) continue;
-        *end = {n.index, n.distanceSquared, filter.entrySquared(tree.position(n.index), n.distanceSquared)};
-        if (end->entrySquared < radius * radius) ++end;
+        *end = {n.index, n.distanceSquared, filter.planeSquared(tree.position(n.index))};
+        if (end->entrySquared() < radius * radius) ++end;
     }
     accepted.resizeWithin(static_cast<size_t>(end - begin));
 }
@@ -113,7 +113,7 @@ float radiusSquaredHolding(uint32_t count, float radius, DensityScratch& scratch
     scratch.entries.clear();
     float* const entries = scratch.entries.room(size + kLanes - 1);
     std::transform(scratch.accepted.begin(), scratch.accepted.end(), entries,
-                   [](const DensityScratch::Candidate& c) { return c.entrySquared; });
+                   [](const DensityScratch::Candidate& c) { return c.entrySquared(); });
     if (size > kFew) return kthSmallest({entries, size}, count, radius * radius);
     std::fill_n(entries + size, kLanes - 1, kInfinity);
     return kthOfFew(entries, size, count);
@@ -126,7 +126,7 @@ float balancedRadiusSquared(const PhotonTreeView& tree, const DensityQuery& quer
         Vec3 moment(0);
         float squares = 0;
         for (const DensityScratch::Candidate& c : scratch.accepted) {
-            if (!(c.entrySquared < radiusSquared)) continue;
+            if (!(c.entrySquared() < radiusSquared)) continue;
             moment += tree.position(c.index) - query.point.position;
             squares += c.distanceSquared;
         }

@@ -20,14 +20,23 @@ struct DensityQuery {
     // Whether a grown radius must not reach light that lies to one side, beyond an edge: it shrinks until it does not.
     // For surfaces that go on in all directions.
     bool balanced = false;
+    Vec3 along{0};  // the least radius is the half width of an ellipse (photon/bandwidth.h); 0: a disc
 };
+
+// An ellipse is where |offset|^2 - (along.offset)^2 is less than the square of its half width. m2, and the ratio of its
+// length to its width.
+inline float elongatedSquared(Vec3 along, Vec3 offset, float lengthSquared) {
+    return lengthSquared - square(glm::dot(along, offset));
+}
+inline float stretchOf(Vec3 along) { return 1 / std::sqrt(1 - lengthSquared(along)); }
 
 // Of an estimate at the position, in m: at a focus many photons may lie there together, to rounding.
 float leastRadius(Vec3 position);
 
 struct GatheredDisc {
-    float radius = 0;       // m
+    float radius = 0;       // m, of an ellipse its half width
     uint32_t accepted = 0;  // photons in it that count
+    float stretch = 1;      // length over width
 };
 
 // Memory that queries use again and again; one for each thread.
@@ -35,7 +44,10 @@ struct DensityScratch {
     struct Candidate {
         uint32_t index;
         float distanceSquared;
-        float entrySquared;  // of the smallest radius at which this photon counts
+        float planeSquared;  // of the radius from which on the disc is as thick as the photon is off its plane
+
+        // Of the smallest radius at which it counts.
+        float entrySquared() const { return std::max(distanceSquared, planeSquared); }
     };
     NeighbourList found;
     ScratchList<Candidate> accepted;  // in the order found
@@ -73,6 +85,29 @@ inline bool liesToOneSide(Vec3 moment, double squares, double tolerance) {
 float balancedRadiusSquared(const PhotonTreeView& tree, const DensityQuery& query, float radiusSquared,
                             const DensityScratch& scratch);
 
+// The photons of the query's ellipse, as gatherPhotons has those of a disc; none and false, if they are fewer than it
+// wants.
+template <PhotonIndex Index, typename Take>
+bool gatherEllipse(const Index& index, const DensityQuery& query, DensityScratch& scratch, Take&& take,
+                   GatheredDisc& ellipse) {
+    ellipse = {query.minRadius, 0, stretchOf(query.along)};
+    const float radiusSquared = square(query.minRadius), length = query.minRadius * ellipse.stretch;
+    index.within(query.point.position, length, scratch.found);
+    acceptPhotons(index.tree(), query, length, scratch.found, scratch.accepted);
+    DensityScratch::Candidate* const begin = scratch.accepted.begin();
+    DensityScratch::Candidate* end = begin;
+    for (const DensityScratch::Candidate& c : scratch.accepted) {
+        const Vec3 offset = index.tree().position(c.index) - query.point.position;
+        const float elongated = elongatedSquared(query.along, offset, c.distanceSquared);
+        if (std::max(elongated, c.planeSquared) < radiusSquared) *end++ = {c.index, elongated, c.planeSquared};
+    }
+    ellipse.accepted = static_cast<uint32_t>(end - begin);
+    if (ellipse.accepted < query.minCount) return false;
+    for (const DensityScratch::Candidate* c = begin; c != end; ++c)
+        take(c->index, epanechnikov(c->distanceSquared, radiusSquared) / ellipse.stretch);
+    return true;
+}
+
 // Calls take(index, weight) for each photon that counts in the disc around the query's point: the sum of
 // weight * power estimates the power that lands there per area (W/m2, times the paths emitted).
 //
@@ -84,9 +119,13 @@ float balancedRadiusSquared(const PhotonTreeView& tree, const DensityQuery& quer
 // not arise. (What `balanced` takes away depends on the photons inside, of which an even density loses one radius in
 // fifty: no bias is seen in it.)
 //
+// An ellipse, if the query has one that holds minCount photons, is taken as it is: it does not grow.
+//
 // Distances are chords, not their projections to the plane: the area of a sphere within a chord r is pi r^2 exactly.
 template <PhotonIndex Index, typename Take>
 GatheredDisc gatherPhotons(const Index& index, const DensityQuery& query, DensityScratch& scratch, Take&& take) {
+    GatheredDisc ellipse;
+    if (query.along != Vec3(0) && gatherEllipse(index, query, scratch, take, ellipse)) return ellipse;
     const float least = query.minRadius, most = std::max(query.minRadius, query.maxRadius);
     float radius = least;
     if (query.minCount > 0 && least < most) radius = std::clamp(firstRadius(index.tree(), query, scratch), least, most);
@@ -110,7 +149,7 @@ GatheredDisc gatherPhotons(const Index& index, const DensityQuery& query, Densit
     }
     GatheredDisc disc{radius, 0};
     for (const DensityScratch::Candidate& c : scratch.accepted) {
-        if (!(c.entrySquared < radiusSquared)) continue;
+        if (!(c.entrySquared() < radiusSquared)) continue;
         ++disc.accepted;
         take(c.index, epanechnikov(c.distanceSquared, radiusSquared));
     }

@@ -119,8 +119,9 @@ void IrradianceCache::make(Record& record, const BandwidthRule& rule, std::span<
     };
     const auto sum = [](std::span<const Rgb> powers) { return std::accumulate(powers.begin(), powers.end(), Rgb(0)); };
     const uint32_t each = 1 + record.bandwidth.count / kDirections;
+    const Vec3 along = record.bandwidth.along, middle = photons_.position(record.photon);
     const bool byBlocks =
-        record.bandwidth.count >= kLeastOfBlocks &&
+        along == Vec3(0) && record.bandwidth.count >= kLeastOfBlocks &&
         acceptByBlocks(source_, record.photon, queryAt(source_, record.photon), radius, scratch,
                        [&](const BlockSums& sums, float distance) { return distance + sums.radius < radius; });
     if (byBlocks) {
@@ -129,7 +130,7 @@ void IrradianceCache::make(Record& record, const BandwidthRule& rule, std::span<
         for (const DensityScratch::Candidate& c : scratch.acceptedBlocks) {
             const uint32_t block = c.index / kBlockSize;
             const BlockSums& sums = (*source_.blocks)[block];
-            if (!(c.entrySquared < radiusSquared)) continue;
+            if (!(c.entrySquared() < radiusSquared)) continue;
             if (!scratch.surface.whole() && scratch.surface.hides(sums.centre)) continue;
             const float weight = epanechnikov(c.distanceSquared + sums.spread, radiusSquared);
             const std::span<const Rgb> powers = source_.blocks->powers(block);
@@ -144,10 +145,12 @@ void IrradianceCache::make(Record& record, const BandwidthRule& rule, std::span<
     uint32_t number = 0;
     for (const DensityScratch::Candidate& c : scratch.density.accepted) {
         const uint16_t group = source_.groups[c.index];
-        if (group >= source_.groupCount || !(c.entrySquared < radiusSquared)) continue;
+        if (group >= source_.groupCount) continue;
+        const float distanceSquared = elongatedSquared(along, photons_.position(c.index) - middle, c.distanceSquared);
+        if (!(std::max(distanceSquared, c.planeSquared) < radiusSquared)) continue;
         if (!scratch.surface.whole() && scratch.surface.hides(photons_.position(c.index))) continue;
         const PhotonPayload& p = photons_.payload[c.index];
-        const float weight = epanechnikov(c.distanceSquared, radiusSquared);
+        const float weight = epanechnikov(distanceSquared, radiusSquared);
         const Rgb e = rgbPower(p) * weight;
         irradiance[group] += e;
         irradiance.back() += e;
@@ -155,7 +158,7 @@ void IrradianceCache::make(Record& record, const BandwidthRule& rule, std::span<
         if (number++ % each == 0) ask(p, weight);
     }
     if (asked > 0) record.arriving = arriving / asked;
-    const auto scale = static_cast<float>(source_.perPath) / scratch.surface.share(radius);
+    const auto scale = static_cast<float>(source_.perPath) / (scratch.surface.share(radius) * stretchOf(along));
     for (Rgb& e : irradiance) e *= scale;
     record.variance *= square(scale);
 }
@@ -232,7 +235,8 @@ bool IrradianceCache::answers(Level& level, size_t run, const DensityQuery& quer
     record.photonsPerRecord = level.photonsPerRecord;
     recordOf(level, place->slot, record, spare, scratch);
     return record.bandwidth.count >= kRunsInDisc * level.photonsPerRecord &&
-           glm::length(query.point.position - photons_.position(record.photon)) < kNear * record.bandwidth.radius;
+           record.bandwidth.distance(query.point.position - photons_.position(record.photon)) <
+               kNear * record.bandwidth.radius;
 }
 
 bool IrradianceCache::nearest(const DensityQuery& query, Vec3 p, Record& record, BandwidthScratch& scratch) {
@@ -258,22 +262,23 @@ CachedLight IrradianceCache::at(const DensityQuery& query, bool wantIrradiance, 
     Record record;
     if (!nearest(query, p, record, scratch)) return light;
     const Bandwidth& there = record.bandwidth;
-    light.bandwidth.radius = std::max(0.0F, there.radius - glm::length(p - photons_.position(record.photon)));
+    light.bandwidth.along = there.along;
+    light.bandwidth.radius = std::max(0.0F, there.radius - there.distance(p - photons_.position(record.photon)));
     light.bandwidth.count =
         static_cast<uint32_t>(static_cast<float>(there.count) * square(light.bandwidth.radius / there.radius));
     if (!wantIrradiance || light.bandwidth.count < smoothCount_ || light.bandwidth.radius < query.minRadius)
         return light;
-    const float spacing =
-        there.radius * std::sqrt(static_cast<float>(record.photonsPerRecord) / static_cast<float>(there.count + 1));
+    const float spacing = std::sqrt(kInvPi * there.area() * static_cast<float>(record.photonsPerRecord) /
+                                    static_cast<float>(there.count + 1));
     const Vec2 offset = std::min(spacing, 0.5F * there.radius) * hashedDiscPoint(p);
     const Frame frame(query.point.ng);
     Record other;
     if (nearest(query, p + offset.x * frame.x + offset.y * frame.y, other, scratch) &&
         other.bandwidth.count >= smoothCount_ &&
-        glm::length(p - photons_.position(other.photon)) < 1.5F * kNear * other.bandwidth.radius) {
+        other.bandwidth.distance(p - photons_.position(other.photon)) < 1.5F * kNear * other.bandwidth.radius) {
         light.irradiance = other.irradiance;
         light.variance = other.variance;
-        light.radius = other.bandwidth.radius;
+        light.over = other.bandwidth;
         if (query.point.ns != query.point.ng) {
             const Vec3 ns = glm::dot(query.point.ns, query.sideNormal) > 0 ? query.point.ns : -query.point.ns;
             light.shading = std::clamp(glm::dot(ns, other.arriving), 0.0F, kMaxShadingWeight);

@@ -21,13 +21,13 @@ struct IrradianceRule {
 };
 
 struct CachedLight {
-    // From that of photons near the point: the disc about it that lies in theirs, and its share of their count.
+    // From that of photons near the point: what about it is like theirs and lies within, and its share of their count.
     Bandwidth bandwidth;
     // W/m2 by group, and last their sum, which does not depend on the groups. Empty: not known here, gather.
     std::span<const Rgb> irradiance;
-    // (W/m2)^2, of their sum, as the photons' number makes it; and the radius (m) over which it is a mean.
+    // (W/m2)^2, of their sum, as the photons' number makes it; and over what it is a mean.
     Rgb variance{0};
-    float radius = 0;
+    Bandwidth over;
     // What the query's shading normal makes of the irradiance: mean of |wi.Ns| / |wi.Ng|.
     float shading = 1;
 };

@@ -28,7 +28,7 @@ TEST_CASE("where light is even the bandwidth grows as far as it may") {
         if (std::max(std::fabs(p.x), std::fabs(p.y)) > 0.8F) continue;
         const Bandwidth b = consistentBandwidth(square.source(), photon, kRule, scratch);
         CHECK(b.count <= 1200);
-        CHECK(b.count == doctest::Approx(20'000 * kPi * b.radius * b.radius).epsilon(0.5));
+        CHECK(b.count == doctest::Approx(20'000 * b.area()).epsilon(0.5));
         wide += b.count >= 450 ? 1 : 0;
     }
     CHECK(wide > 90);
@@ -76,7 +76,7 @@ TEST_CASE("photons of no group do not count") {
         if (std::max(std::fabs(p.x), std::fabs(p.y)) > 0.8F) continue;
         const Bandwidth b = consistentBandwidth(square.source(1), i, kRule, scratch);
         if (b.count < 200) continue;
-        CHECK(b.count == doctest::Approx(10'000 * kPi * b.radius * b.radius).epsilon(0.35));
+        CHECK(b.count == doctest::Approx(10'000 * b.area()).epsilon(0.35));
         ++wide;
     }
     CHECK(wide > 50);

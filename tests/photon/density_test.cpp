@@ -49,6 +49,7 @@ Estimate estimate(const std::vector<Photon>& photons, const DensityQuery& query)
 // Mean of estimates over independent Poisson maps of 100 photons/m2, in standard errors from the truth.
 struct Bias {
     double relative, sigmas;
+    double deviation;  // of one estimate, relative
 };
 Bias biasOnPoissonMaps(const DensityQuery& query) {
     constexpr int kMaps = 8000;
@@ -71,10 +72,49 @@ Bias biasOnPoissonMaps(const DensityQuery& query) {
     }
     const double mean = sum / kMaps;
     const double error = std::sqrt((squares / kMaps - mean * mean) / kMaps);
-    return {mean / kDensity - 1, (mean - kDensity) / error};
+    return {mean / kDensity - 1, (mean - kDensity) / error, error * std::sqrt(kMaps) / kDensity};
 }
 
 }  // namespace
+
+TEST_CASE("an ellipse estimates an even density without bias, with the variance of as large a disc") {
+    DensityQuery query = queryAtOrigin(0, 0.1F, 0.1F);
+    const Bias narrow = biasOnPoissonMaps(query);
+    query.minRadius = 0.2F;
+    const Bias wide = biasOnPoissonMaps(query);
+    query.minRadius = 0.1F;
+    query.along = std::sqrt(1 - 1 / 16.0F) * Vec3(0.6F, 0.8F, 0);
+    const Bias ellipse = biasOnPoissonMaps(query);
+    CHECK(std::fabs(ellipse.sigmas) < 3);
+    // Four times as long: of four times the area, like a disc of twice the radius.
+    CHECK(ellipse.deviation == doctest::Approx(wide.deviation).epsilon(0.05));
+    CHECK(narrow.deviation > 1.8 * ellipse.deviation);
+}
+
+TEST_CASE("an ellipse holds what its norm says, of those off the plane what a disc of its width would") {
+    std::vector<Photon> photons;
+    const Vec3 direction(0.6F, 0.8F, 0), across(-0.8F, 0.6F, 0);
+    const auto at = [&](float t, float q, float z) {
+        photons.push_back(photonAt(t * direction + q * across + Vec3(0, 0, z)));
+    };
+    at(0.39F, 0, 0);
+    at(0.41F, 0, 0);
+    at(0, 0.09F, 0);
+    at(0, 0.11F, 0);
+    at(0.2F, 0.08F, 0);
+    at(0.2F, 0.09F, 0);  // (0.2 / 4)^2 + 0.09^2 > 0.1^2
+    at(0.2F, 0, 0.019F);
+    at(0.2F, 0, 0.021F);  // above a fifth of the half width
+    DensityQuery query = queryAtOrigin(0, 0.1F, 0.1F);
+    query.along = std::sqrt(1 - 1 / 16.0F) * direction;
+    const Estimate e = estimate(photons, query);
+    CHECK(e.disc.accepted == 4);
+    CHECK(e.disc.stretch == doctest::Approx(4));
+    // Too few for what the query wants: a disc that grows.
+    query.minCount = 5;
+    query.maxRadius = 1;
+    CHECK(estimate(photons, query).disc.stretch == 1);
+}
 
 TEST_CASE("the kernel has mass 1, and the share within a radius is its integral") {
     double mass = 0;

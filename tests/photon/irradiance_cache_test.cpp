@@ -202,7 +202,8 @@ TEST_CASE("beside an edge the cached irradiance is that of its own side") {
                 const CachedLight light = cache.at(queryFrom({side, random.between(-0.6F, 0.6F), 0}), true, scratch);
                 if (light.irradiance.empty()) continue;
                 const double there = static_cast<double>(light.irradiance.back().y) / (side < 0 ? 4000 : 200'000);
-                if (side < 0) darkMost = std::max(darkMost, there);
+                // From here on the least disc, of 20 photons, lies in the dark.
+                if (side < -0.06F) darkMost = std::max(darkMost, there);
                 (side < 0 ? dark : bright).add(there);
             }
         }
@@ -305,7 +306,7 @@ TEST_CASE("block by block the irradiance, its groups and its direction are those
         REQUIRE(a.irradiance.size() == b.irradiance.size());
         if (a.irradiance.empty()) continue;
         ++known;
-        CHECK(a.radius == b.radius);
+        CHECK(a.over.radius == b.over.radius);
         const auto sum = [](Rgb e) { return e.x + e.y + e.z; };
         CHECK(sum(a.irradiance[2]) == doctest::Approx(sum(b.irradiance[2])).epsilon(1e-4));
         // A block has one middle for all channels and groups: its parts are off by chance, by less than their error.
