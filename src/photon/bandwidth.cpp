@@ -17,9 +17,6 @@ constexpr double kRingTolerance = 3;
 // And by which the power in a disc may lie to one side. Brightness that rises steadily lies there as well, without
 // harm; half a disc in the dark is plainer than that. Where colours meet, each channel changes by a part only.
 constexpr double balanceTolerance(size_t signals) { return signals == 1 ? 5 : 3; }
-// A few photons of blocks far denser than the smallest disc are no chance: they belong to something else, beyond an
-// edge.
-constexpr uint32_t kFewDense = 3;
 
 // The photons between one radius and the next smaller one.
 template <size_t kSignals>
@@ -217,13 +214,6 @@ class RadiusSearch {
     std::array<std::array<Estimate, kMostLevels>, kSignals> estimates_;
 };
 
-template <size_t kSignals>
-Bandwidth search(const PhotonSource& source, uint32_t photon, const BandwidthRule& rule, BandwidthScratch& scratch) {
-    RadiusSearch<kSignals> radii(source, photon, rule, scratch);
-    const Bandwidth disc = radii.run();
-    return radii.atEdge() && !source.dispersed ? elongated(source, photon, disc, rule, scratch) : disc;
-}
-
 }  // namespace
 
 DensityQuery queryAt(const PhotonSource& source, uint32_t photon) {
@@ -241,7 +231,10 @@ DensityQuery queryAt(const PhotonSource& source, uint32_t photon) {
 
 Bandwidth consistentBandwidth(const PhotonSource& source, uint32_t photon, const BandwidthRule& rule,
                               BandwidthScratch& scratch) {
-    return source.dispersed ? search<3>(source, photon, rule, scratch) : search<1>(source, photon, rule, scratch);
+    if (source.dispersed) return RadiusSearch<3>(source, photon, rule, scratch).run();
+    RadiusSearch<1> radii(source, photon, rule, scratch);
+    const Bandwidth disc = radii.run();
+    return radii.atEdge() ? elongated(source, photon, disc, rule, scratch) : disc;
 }
 
 }  // namespace lsde

@@ -25,4 +25,7 @@ class DenserBlocks {
     bool last_ = false;
 };
 
+// So many photons of denser blocks are no chance: they belong to something else, beyond an edge.
+inline constexpr uint32_t kFewDense = 3;
+
 }  // namespace lsde

@@ -21,8 +21,6 @@ constexpr float kSpreadRadii = 3;  // of the disc in which the direction is look
 // Standard errors by which what an ellipse takes in may differ from what it had. Beyond narrow light it takes in dark,
 // and the dark there does not take in light: with 3, a prism's streak lost .23% of its light, with 2 it loses .13%.
 constexpr double kTolerance = 2;
-// Photons of far denser blocks where there were none.
-constexpr double kFewDense = 3;
 
 // Sums over photons at a distance of q across an axis and t along it (m).
 struct AxisMoments {
@@ -56,9 +54,8 @@ struct AxisMoments {
     // By Epanechnikov's kernel on an ellipse of half width r, `stretch` times as long: estimateOf with distances^2 of
     // q^2 + (t / stretch)^2.
     Estimate estimate(double r2, double stretch) const {
-        const double s2 = square(stretch), scale = 1 / (r2 * stretch);
-        const double pd2 = pq2 + pt2 / s2, ppd2 = ppq2 + ppt2 / s2, ppd4 = ppq4 + (2 * ppq2t2 + ppt4 / s2) / s2;
-        return {scale * (p - pd2 / r2), square(scale) * (pp - 2 * ppd2 / r2 + ppd4 / square(r2))};
+        const double s2 = square(stretch);
+        return estimateOf({p, pq2 + pt2 / s2, pp, ppq2 + ppt2 / s2, ppq4 + (2 * ppq2t2 + ppt4 / s2) / s2}, r2, stretch);
     }
 };
 

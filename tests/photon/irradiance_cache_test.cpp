@@ -202,8 +202,7 @@ TEST_CASE("beside an edge the cached irradiance is that of its own side") {
                 const CachedLight light = cache.at(queryFrom({side, random.between(-0.6F, 0.6F), 0}), true, scratch);
                 if (light.irradiance.empty()) continue;
                 const double there = static_cast<double>(light.irradiance.back().y) / (side < 0 ? 4000 : 200'000);
-                // From here on the least disc, of 20 photons, lies in the dark.
-                if (side < -0.06F) darkMost = std::max(darkMost, there);
+                if (side < 0) darkMost = std::max(darkMost, there);
                 (side < 0 ? dark : bright).add(there);
             }
         }
