@@ -135,7 +135,7 @@ PathGroups groupsOf(const GatherInput& input, const PhotonTreeView& tree, RunCon
                 const PhotonPayload& p = tree.payload[i];
                 return input.lights[p.light] ? std::optional(PathCode(p.path)) : std::nullopt;
             },
-            run.pool};
+            input.map.scratchPlace(), run.pool};
 }
 
 }  // namespace
@@ -169,11 +169,13 @@ ClassGather::ClassGather(const GatherInput& input, PhotonClass c, const GatherSe
     perPath_ = paths > 0 ? 1 / static_cast<double>(paths) : 0;
     if (progressive.pilot != nullptr) return;
     const bool dispersed = input.scene.disperses();
+    const ScratchPlace place = input.map.scratchPlace();
     if (!dispersed && groups_.size() <= kMostGroupsOfBlocks)
-        blocks_ = BlockTable(tree_, groups_.all(), groups_.size(), run.pool);
-    cache_ = std::make_unique<IrradianceCache>(PhotonSource{index_, extent_, groups_.all(), groups_.size(), perPath_,
-                                                            reach_, dispersed, blocks_.empty() ? nullptr : &blocks_},
-                                               rule_.irradiance);
+        blocks_ = BlockTable(tree_, groups_.all(), groups_.size(), place, run.pool);
+    cache_ =
+        std::make_unique<IrradianceCache>(PhotonSource{index_, extent_, groups_.all(), groups_.size(), perPath_, reach_,
+                                                       dispersed, blocks_.empty() ? nullptr : &blocks_, place},
+                                          rule_.irradiance);
 }
 
 DensityQuery ClassGather::densityQuery(const PhotonGatherQuery& query, GatherScratch& scratch) const {
@@ -287,7 +289,11 @@ const GatheredLight& ClassGather::gather(const PhotonGatherQuery& query, const B
 
 PhotonGather::PhotonGather(const GatherInput& input, const GatherSettings& settings, RunContext& run)
     : caustic_(input, PhotonClass::Caustic, settings, settings.caustic, settings.progressive, run) {
-    if (!settings.indirectFromMap || !input.map.stores(PhotonClass::Indirect)) return;
+    if (settings.indirectFromMap && input.map.stores(PhotonClass::Indirect)) gatherIndirect(input, settings, run);
+    input.map.expectLookups();
+}
+
+void PhotonGather::gatherIndirect(const GatherInput& input, const GatherSettings& settings, RunContext& run) {
     RadiusRule rule = settings.indirect;
     BandwidthRule& bandwidth = rule.irradiance.bandwidth;
     // Pass by pass smaller, like the caustics' radius.

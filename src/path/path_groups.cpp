@@ -47,8 +47,8 @@ class Recent {
 }  // namespace
 
 PathGroups::PathGroups(const PathFilter& filter, size_t count,
-                       const std::function<std::optional<PathCode>(size_t)>& path, ThreadPool& pool)
-    : groups_(count, kNone) {
+                       const std::function<std::optional<PathCode>(size_t)>& path, ScratchPlace place, ThreadPool& pool)
+    : groups_(count, place) {
     const size_t chunks = (count + kPathsPerChunk - 1) / kPathsPerChunk;
     std::vector<std::vector<State>> tables(chunks);
     pool.forRange(count, kPathsPerChunk, [&](size_t begin, size_t end) {
@@ -56,6 +56,7 @@ PathGroups::PathGroups(const PathFilter& filter, size_t count,
         Recent recent;
         for (size_t i = begin; i < end; ++i) {
             const std::optional<PathCode> code = path(i);
+            groups_[i] = kNone;
             if (!code) continue;
             if (const uint16_t* group = recent.find(*code)) {
                 groups_[i] = *group;

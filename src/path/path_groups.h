@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "base/scratch_array.h"
 #include "path/path_filter.h"
 
 namespace lsde {
@@ -22,16 +23,16 @@ class PathGroups {
     // path(i): the code of path i of `count`; nullopt if it does not take part. Groups are numbered in the order of
     // their first paths, for any number of threads. Throws Error beyond 65535 groups.
     PathGroups(const PathFilter& filter, size_t count, const std::function<std::optional<PathCode>(size_t)>& path,
-               ThreadPool& pool);
+               ScratchPlace place, ThreadPool& pool);
 
     uint16_t of(size_t i) const { return groups_[i]; }
-    std::span<const uint16_t> all() const { return groups_; }
+    std::span<const uint16_t> all() const { return {groups_.data(), groups_.size()}; }
     size_t size() const { return states_.size(); }
     // Empty: the group of overflowed codes, which have no state.
     const std::optional<LightPathState>& state(size_t group) const { return states_[group]; }
 
   private:
-    std::vector<uint16_t> groups_;
+    ScratchArray<uint16_t> groups_;
     std::vector<std::optional<LightPathState>> states_;
 };
 

@@ -14,12 +14,13 @@ namespace lsde {
 struct PhotonSource {
     const AnyIndex& index;
     const SurfaceExtent& extent;
-    std::span<const uint16_t> groups;    // of each photon (path/path_groups.h)
-    size_t groupCount = 0;               // photons of higher groups do not take part
-    double perPath = 0;                  // 1 / emitted paths
-    float maxRadius = 0;                 // m, of an estimate
-    bool dispersed = false;              // some photons have a wavelength: colours are to be kept apart
-    const BlockTable* blocks = nullptr;  // null: all is summed photon by photon
+    std::span<const uint16_t> groups;           // of each photon (path/path_groups.h)
+    size_t groupCount = 0;                      // photons of higher groups do not take part
+    double perPath = 0;                         // 1 / emitted paths
+    float maxRadius = 0;                        // m, of an estimate
+    bool dispersed = false;                     // some photons have a wavelength: colours are to be kept apart
+    const BlockTable* blocks = nullptr;         // null: all is summed photon by photon
+    ScratchPlace place = ScratchPlace::Memory;  // of what is kept of many photons
 
     const PhotonTreeView& photons() const {
         return std::visit([](const auto& i) -> const PhotonTreeView& { return i.tree(); }, index);

@@ -24,8 +24,8 @@ bool allAlike(const PhotonTreeView& tree, uint32_t first) {
 }  // namespace
 
 BlockTable::BlockTable(const PhotonTreeView& tree, std::span<const uint16_t> groups, size_t groupCount,
-                       ThreadPool& pool)
-    : blocks_(tree.blocks.size()), powers_(tree.blocks.size() * groupCount), groups_(groupCount) {
+                       ScratchPlace place, ThreadPool& pool)
+    : blocks_(tree.blocks.size(), place), powers_(tree.blocks.size() * groupCount, place), groups_(groupCount) {
     constexpr size_t kRun = 4096;
     pool.forEach((blocks_.size() + kRun - 1) / kRun, [&](size_t run) {
         for (size_t b = run * kRun; b < std::min(blocks_.size(), (run + 1) * kRun); ++b)
@@ -35,6 +35,7 @@ BlockTable::BlockTable(const PhotonTreeView& tree, std::span<const uint16_t> gro
 
 void BlockTable::sum(const PhotonTreeView& tree, std::span<const uint16_t> groups, uint32_t block) {
     const uint32_t first = block * kBlockSize;
+    blocks_[block] = {};
     if (uint64_t{first} + kBlockSize > tree.count || !allAlike(tree, first)) return;
     BlockSums sums;
     std::array<float, kBlockSize> each{};  // sum of channels

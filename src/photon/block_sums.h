@@ -2,8 +2,8 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
+#include "base/scratch_array.h"
 #include "photon/kd_index.h"
 
 namespace lsde {
@@ -26,18 +26,19 @@ class BlockTable {
   public:
     BlockTable() = default;  // without any
     // groups: of each photon of the tree.
-    BlockTable(const PhotonTreeView& tree, std::span<const uint16_t> groups, size_t groupCount, ThreadPool& pool);
+    BlockTable(const PhotonTreeView& tree, std::span<const uint16_t> groups, size_t groupCount, ScratchPlace place,
+               ThreadPool& pool);
 
     bool empty() const { return blocks_.empty(); }
     const BlockSums& operator[](uint32_t block) const { return blocks_[block]; }
     // W of one path, of each group.
-    std::span<const Rgb> powers(uint32_t block) const { return std::span(powers_).subspan(block * groups_, groups_); }
+    std::span<const Rgb> powers(uint32_t block) const { return {powers_.data() + block * groups_, groups_}; }
 
   private:
     void sum(const PhotonTreeView& tree, std::span<const uint16_t> groups, uint32_t block);
 
-    std::vector<BlockSums> blocks_;
-    std::vector<Rgb> powers_;
+    ScratchArray<BlockSums> blocks_;
+    ScratchArray<Rgb> powers_;
     size_t groups_ = 0;
 };
 

@@ -1,6 +1,7 @@
 #include "photon/irradiance_cache.h"
 
 #include <array>
+#include <atomic>
 #include <bit>
 #include <numeric>
 
@@ -93,12 +94,12 @@ IrradianceCache::IrradianceCache(const PhotonSource& source, const IrradianceRul
         level.rule = rule.bandwidth;
         level.rule.mostCount = std::min(level.rule.mostCount, mostCountOf(photonsPerRecord));
         const size_t slots = kSides * runs;
-        level.offsets = std::vector<std::atomic<uint16_t>>(slots);
-        level.states = std::vector<std::atomic<uint8_t>>(slots);
-        level.bandwidths = std::make_unique_for_overwrite<Bandwidth[]>(slots);
-        level.irradiance = std::make_unique_for_overwrite<Rgb[]>(slots * (source.groupCount + 1));
-        level.variances = std::make_unique_for_overwrite<Rgb[]>(slots);
-        level.arriving = std::make_unique_for_overwrite<Vec3[]>(slots);
+        level.offsets = {slots, source.place};
+        level.states = {slots, source.place};
+        level.bandwidths = {slots, source.place};
+        level.irradiance = {slots * (source.groupCount + 1), source.place};
+        level.variances = {slots, source.place};
+        level.arriving = {slots, source.place};
     }
 }
 
@@ -166,7 +167,7 @@ void IrradianceCache::make(Record& record, const BandwidthRule& rule, std::span<
 void IrradianceCache::recordOf(Level& level, size_t slot, Record& record, std::vector<Rgb>& spare,
                                BandwidthScratch& scratch) {
     const size_t groups = source_.groupCount + 1;  // and their sum
-    std::atomic<uint8_t>& state = level.states[slot];
+    const std::atomic_ref<uint8_t> state(level.states[slot]);
     const std::span<Rgb> kept(&level.irradiance[slot * groups], groups);
     uint8_t expected = kUnknown;
     const bool known = state.load(std::memory_order_acquire) == kKnown;
@@ -205,7 +206,7 @@ std::optional<IrradianceCache::Place> IrradianceCache::placeOf(Level& level, siz
     const auto first = static_cast<uint32_t>(run * level.photonsPerRecord);
     const auto end = static_cast<uint32_t>(std::min<uint64_t>(first + level.photonsPerRecord, photons_.count));
     const auto offsetOf = [&](size_t slot, const auto& counts) {
-        std::atomic<uint16_t>& kept = level.offsets[slot];
+        const std::atomic_ref<uint16_t> kept(level.offsets[slot]);
         uint16_t coded = kept.load(std::memory_order_relaxed);
         if (coded == 0) {  // not known yet
             const std::optional<uint32_t> photon = nearestToMiddle(photons_, first, end, counts);

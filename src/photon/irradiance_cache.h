@@ -2,11 +2,10 @@
 // the irradiance (Christensen 1999) where that is far.
 #pragma once
 
-#include <atomic>
-#include <memory>
 #include <optional>
 #include <vector>
 
+#include "base/scratch_array.h"
 #include "photon/bandwidth.h"
 
 namespace lsde {
@@ -57,12 +56,12 @@ class IrradianceCache {
     struct Level {
         uint32_t photonsPerRecord = 0;
         BandwidthRule rule;
-        std::vector<std::atomic<uint16_t>> offsets;  // of the record's photon in its run, coded (placeOf)
-        std::vector<std::atomic<uint8_t>> states;
-        std::unique_ptr<Bandwidth[]> bandwidths;
-        std::unique_ptr<Rgb[]> irradiance;  // of slot i and group g: [i * (groups + 1) + g]
-        std::unique_ptr<Rgb[]> variances;   // of the sum over groups
-        std::unique_ptr<Vec3[]> arriving;
+        ScratchArray<uint16_t> offsets;  // of the record's photon in its run, coded (placeOf)
+        ScratchArray<uint8_t> states;
+        ScratchArray<Bandwidth> bandwidths;
+        ScratchArray<Rgb> irradiance;  // of slot i and group g: [i * (groups + 1) + g]
+        ScratchArray<Rgb> variances;   // of the sum over groups
+        ScratchArray<Vec3> arriving;
     };
     bool answers(Level& level, size_t run, const DensityQuery& query, Record& record, std::vector<Rgb>& spare,
                  BandwidthScratch& scratch);

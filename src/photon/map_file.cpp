@@ -156,6 +156,10 @@ struct PhotonMap::Mapping {
     ContainerReader container;
 };
 
+void PhotonMap::expectLookups() const {
+    if (mapping_) mapping_->container.expectLookups();
+}
+
 PhotonTreeView PhotonMap::photons(PhotonClass c) const { return views_[static_cast<size_t>(c)]; }
 bool PhotonMap::stores(PhotonClass c) const { return stored_[static_cast<size_t>(c)]; }
 

@@ -9,6 +9,7 @@
 
 #include "base/fixed_point.h"
 #include "base/run.h"
+#include "base/scratch_array.h"
 #include "photon/kd_index.h"
 #include "photon/ledger.h"
 
@@ -50,6 +51,9 @@ class PhotonMap {
     PhotonTreeView photons(PhotonClass c) const;
     bool stores(PhotonClass c) const;
     void setTree(PhotonClass c, PhotonTree tree);  // owned
+    // Of what is worked out for each photon: like the map itself, which may be larger than memory.
+    ScratchPlace scratchPlace() const { return mapping_ ? ScratchPlace::File : ScratchPlace::Memory; }
+    void expectLookups() const;  // no longer from one end to the other (MappedFile)
 
     // keeps a mapped file alive
     struct Mapping;

@@ -308,6 +308,7 @@ std::vector<std::string> ContainerReader::sectionNames() const {
 }
 
 uint64_t ContainerReader::fileBytes() const { return impl_->header.fileBytes; }
+void ContainerReader::expectLookups() const { impl_->file.expectLookups(); }
 const std::filesystem::path& ContainerReader::path() const { return impl_->file.path(); }
 
 std::span<const std::byte> ContainerReader::sectionBytes(std::string_view name, uint32_t elementSize) const {

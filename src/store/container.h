@@ -76,6 +76,7 @@ class ContainerReader {
     }
     std::vector<std::string> sectionNames() const;
     uint64_t fileBytes() const;
+    void expectLookups() const;  // MappedFile's
     const std::filesystem::path& path() const;
 
   private:

@@ -249,6 +249,9 @@ MappedFile::Mapping::Mapping(const fs::path& file) : path(file) {
     if (input.bytes == 0) return;  // an empty mapping is not allowed
     void* data = ::mmap(nullptr, input.bytes, PROT_READ, MAP_PRIVATE, input.descriptor.get(), 0);
     if (data == MAP_FAILED) failErrno(path, "cannot be mapped");
+    // Of a file larger than memory pages are then put aside in the order in which they came; else the kernel keeps
+    // looking for one that was not used lately. Advice alone: nothing depends on its being taken.
+    ::madvise(data, input.bytes, MADV_SEQUENTIAL);
     range = {static_cast<const std::byte*>(data), input.bytes,
              fmt::format("error: {}: was cut while in use\n", path.string())};
     if (guard(range)) return;
@@ -269,6 +272,9 @@ MappedFile& MappedFile::operator=(MappedFile&& other) noexcept = default;
 
 std::span<const std::byte> MappedFile::bytes() const { return {mapping_->range.begin, mapping_->range.bytes}; }
 const fs::path& MappedFile::path() const { return mapping_->path; }
+void MappedFile::expectLookups() const {
+    ::madvise(const_cast<std::byte*>(mapping_->range.begin), mapping_->range.bytes, MADV_RANDOM);
+}
 
 void guardMappedFiles() {
     struct sigaction action {};

@@ -53,6 +53,8 @@ class MappedFile {
 
     std::span<const std::byte> bytes() const;
     const std::filesystem::path& path() const;
+    // From now on, here and there: where memory is short, what is read is no more than what is asked for.
+    void expectLookups() const;
 
   private:
     struct Mapping;

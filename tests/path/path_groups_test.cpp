@@ -30,7 +30,7 @@ TEST_CASE("each path is in the group of its state, and groups are few") {
     const PathFilter filter = filterOf({"LS+DE", "L[DS]*DS*E", "LG.*E"});
     constexpr size_t kCount = 200'000;  // several chunks
     ThreadPool pool(2);
-    const PathGroups groups(filter, kCount, codeOf, pool);
+    const PathGroups groups(filter, kCount, codeOf, ScratchPlace::Memory, pool);
     CHECK(groups.size() > 3);
     CHECK(groups.size() < 60);
     for (size_t i = 0; i < kCount; ++i) {
@@ -49,7 +49,8 @@ TEST_CASE("each path is in the group of its state, and groups are few") {
 TEST_CASE("the numbers of groups do not depend on the threads") {
     const PathFilter filter = filterOf({"L.*DE", "LS*E"});
     ThreadPool one(1), two(2);
-    const PathGroups a(filter, 300'000, codeOf, one), b(filter, 300'000, codeOf, two);
+    const PathGroups a(filter, 600'000, codeOf, ScratchPlace::Memory, one),
+        b(filter, 600'000, codeOf, ScratchPlace::File, two);
     CHECK(std::equal(a.all().begin(), a.all().end(), b.all().begin(), b.all().end()));
 }
 
@@ -69,7 +70,7 @@ TEST_CASE("groups are numbered by their first paths, and all overflowed paths sh
         return c;
     };
     ThreadPool pool(2);
-    const PathGroups groups(filter, kCount, code, pool);
+    const PathGroups groups(filter, kCount, code, ScratchPlace::Memory, pool);
     uint16_t next = 0;
     for (size_t i = 0; i < kCount; ++i) {
         if (groups.of(i) == PathGroups::kNone) continue;

@@ -27,7 +27,7 @@ PhotonTree treeWith(size_t count, const Change& change) {
 BlockTable tableOf(const PhotonTree& tree) {
     ThreadPool pool(1);
     const std::vector<uint16_t> groups(tree.count, 0);
-    return {view(tree), groups, 1, pool};
+    return {view(tree), groups, 1, ScratchPlace::Memory, pool};
 }
 
 size_t alike(const PhotonTree& tree, const BlockTable& table) {

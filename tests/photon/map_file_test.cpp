@@ -120,6 +120,8 @@ TEST_CASE_FIXTURE(Fixture, "a map comes back from its file as it was, with at mo
         const PhotonMap map = mapOf({0, 10'000}, all);
         writePhotonMap(file, map, run);
         const PhotonMap read = readPhotonMap(file, run);
+        CHECK(map.scratchPlace() == ScratchPlace::Memory);
+        CHECK(read.scratchPlace() == ScratchPlace::File);
         uint64_t count = 0;
         for (int c = 0; c < kPhotonClasses; ++c) {
             const auto photonClass = static_cast<PhotonClass>(c);

@@ -26,7 +26,8 @@ struct Square {
     // Again, after changes to the photons.
     void sumBlocks() {
         ThreadPool pool(1);
-        for (size_t i = 0; i < blocks.size(); ++i) blocks[i] = BlockTable(view(tree), groups, i + 1, pool);
+        for (size_t i = 0; i < blocks.size(); ++i)
+            blocks[i] = BlockTable(view(tree), groups, i + 1, ScratchPlace::Memory, pool);
     }
     static PhotonTree make(uint32_t seed, float density, float contrast, float behind) {
         Random random(seed);
