@@ -12,7 +12,7 @@ namespace lsde {
 
 namespace {
 
-constexpr float kLeastRate = 0.25F, kMostRate = 16;
+constexpr float kLeastRate = 0.125F, kMostRate = 16;
 // Pixels up to this far away say what a pixel's noise is.
 constexpr int kReach = 3;
 
