@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -30,6 +31,8 @@ inline float maxComponent(Vec3 v) { return std::max({v.x, v.y, v.z}); }
 inline float mean(Rgb c) { return (c.x + c.y + c.z) / 3; }
 inline bool isBlack(Rgb c) { return c.x == 0 && c.y == 0 && c.z == 0; }
 inline bool isFinite(Vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+// 0 below 1; l from 2^(l-1) up to 2^l. x: not negative.
+inline int octaveOf(float x) { return x < 1 ? 0 : static_cast<int>(std::bit_cast<uint32_t>(x) >> 23) - 126; }
 inline float safeSqrt(float x) { return std::sqrt(std::max(0.0F, x)); }
 
 // Luminance of linear Rec. 709 (ITU-R BT.709, white D65).

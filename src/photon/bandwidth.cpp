@@ -1,7 +1,6 @@
 #include "photon/bandwidth.h"
 
 #include <array>
-#include <bit>
 
 #include "photon/denser_blocks.h"
 #include "photon/elongation.h"
@@ -133,10 +132,7 @@ class RadiusSearch {
 
     float radiusOf(int level) const { return r0_ * std::sqrt(static_cast<float>(1 << level)); }
     // 0: within r0; l: between r0 2^((l-1)/2) and r0 2^(l/2).
-    int levelOf(float entrySquared) const {
-        const float ratio = entrySquared / (r0_ * r0_);
-        return ratio < 1 ? 0 : static_cast<int>(std::bit_cast<uint32_t>(ratio) >> 23) - 126;  // 1 + log2
-    }
+    int levelOf(float entrySquared) const { return octaveOf(entrySquared / (r0_ * r0_)); }
 
     // Levels [from, to).
     template <typename Index>

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 
 #include "photon/denser_blocks.h"
 #include "photon/power_moments.h"
@@ -161,18 +160,14 @@ class Elongation {
             if (!counts(c)) continue;
             const float t2 = square(glm::dot(direction_, offsetOf(c))), q2 = std::max(0.0F, c.distanceSquared - t2);
             if (!(std::max(q2, c.planeSquared) < r2)) continue;
-            // q^2 + (t / s)^2 < r^2
-            const size_t step = stepOf(t2 / (r2 - q2));
+            // q^2 + (t / s)^2 < r^2, of the least s^2, a power of 2
+            const auto step = static_cast<size_t>(octaveOf(t2 / (r2 - q2)));
             if (step >= kSteps) continue;
             Ends& ends = ends_[step];
             ++ends.count;
             ends.dense += isDense(c.index / kBlockSize) ? 1 : 0;
             ends.power.add(powerOf(c), static_cast<double>(q2), static_cast<double>(t2));
         }
-    }
-    // Of the least stretch^2, a power of 2, above the given one.
-    static size_t stepOf(float stretchSquared) {
-        return stretchSquared < 1 ? 0 : (std::bit_cast<uint32_t>(stretchSquared) >> 23) - 126;  // 1 + log2
     }
 
     // Whether the ends hold light like that within, in power, and in how much of it lies far more densely.

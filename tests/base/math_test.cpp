@@ -67,3 +67,14 @@ TEST_CASE("small helpers mean what they say") {
     CHECK(!isFinite(Vec3(0, 0, std::numeric_limits<float>::quiet_NaN())));
     CHECK(square(-3) == 9);
 }
+
+TEST_CASE("an octave goes from a power of two to below the next") {
+    CHECK(octaveOf(0) == 0);
+    CHECK(octaveOf(0x1.fffffep-1F) == 0);
+    for (int l = 1; l <= 127; ++l) {
+        const float first = std::ldexp(1.0F, l - 1);
+        REQUIRE(octaveOf(first) == l);
+        REQUIRE(octaveOf(std::nextafter(2 * first, 0.0F)) == l);
+    }
+    CHECK(octaveOf(kInfinity) > 127);
+}
