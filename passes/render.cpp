@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kDefaultSamples = 64;
 // Of a time limit, where there are caustics: what the pixels can spare, within bounds.
-constexpr double kLeastEmissionShare = 0.33, kMostEmissionShare = 0.5;
+constexpr double kLeastEmissionShare = 0.33, kMostEmissionShare = 0.45;
 constexpr double kPixelSeconds = 6e-5;  // for half a dozen samples, roughly, of a pixel that sees a surface
 constexpr uint32_t kPilotRadiusPhotons = 50;
 
