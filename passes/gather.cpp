@@ -289,11 +289,11 @@ const GatheredLight& ClassGather::gather(const PhotonGatherQuery& query, const B
 
 PhotonGather::PhotonGather(const GatherInput& input, const GatherSettings& settings, RunContext& run)
     : caustic_(input, PhotonClass::Caustic, settings, settings.caustic, settings.progressive, run) {
-    if (settings.indirectFromMap && input.map.stores(PhotonClass::Indirect)) gatherIndirect(input, settings, run);
+    if (settings.indirectFromMap && input.map.stores(PhotonClass::Indirect)) makeIndirect(input, settings, run);
     input.map.expectLookups();
 }
 
-void PhotonGather::gatherIndirect(const GatherInput& input, const GatherSettings& settings, RunContext& run) {
+void PhotonGather::makeIndirect(const GatherInput& input, const GatherSettings& settings, RunContext& run) {
     RadiusRule rule = settings.indirect;
     BandwidthRule& bandwidth = rule.irradiance.bandwidth;
     // Pass by pass smaller, like the caustics' radius.

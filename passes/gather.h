@@ -131,7 +131,7 @@ class PhotonGather {
     const ClassGather* indirect() const { return indirect_ ? &*indirect_ : nullptr; }
 
   private:
-    void gatherIndirect(const GatherInput& input, const GatherSettings& settings, RunContext& run);
+    void makeIndirect(const GatherInput& input, const GatherSettings& settings, RunContext& run);
 
     ClassGather caustic_;
     std::optional<ClassGather> indirect_;
