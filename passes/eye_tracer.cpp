@@ -5,19 +5,13 @@
 #include <mutex>
 
 #include "sampling/mis.h"
+#include "sampling/strata.h"
 
 namespace lsde {
 
 namespace {
 
 constexpr int kTile = 16;  // pixels
-
-// Light samples at a vertex: one, or one in each quarter of the unit square, at the same place in each. A pixel's
-// samples are well distributed in a quarter, so all together are four times as finely as one a sample would be; a
-// shadow ray costs a tenth of a pixel's sample.
-constexpr int kQuarters = 4;
-
-Vec2 inQuarter(Vec2 u, int i) { return glm::min(0.5F * (u + Vec2(i & 1, i / 2)), Vec2(kOneMinusEpsilon)); }
 
 float rotated(float u, float by) { return u + by < 1 ? u + by : u + by - 1; }
 
@@ -30,6 +24,7 @@ struct EyePath {
     Sampler sampler;
     int splits = 0;         // interfaces that may still be split
     int depth = 0;          // events so far
+    int lightSamples = 1;   // until it has left a Diffuse vertex
     float misPdf = 0;       // 1/sr with which the last non-delta vertex drew this direction
     LitPlace place;         // and that vertex, for the choice of a light there
     float travelled = 0;    // m since the last vertex that was not passed straight
@@ -42,6 +37,7 @@ struct EyePath {
     bool endsAtDiffuse = false;  // the map owns what reaches a diffuse lobe of this vertex, but for direct light
     float bsdfSamples = 1;       // directions sampled at the last non-delta vertex, for MIS
 
+    int lightSamplesHere() const { return metDiffuse ? 1 : lightSamples; }
     // Nothing goes on from v but a look for emitters.
     bool endsAt(const Vertex& v) const { return endsAtDiffuse && std::holds_alternative<DiffuseBsdf>(v.bsdf); }
 };
@@ -80,7 +76,8 @@ void EyeTracer::render(Film& film, std::vector<SampleStatistics>& statistics, co
                     static_cast<size_t>(y) * static_cast<size_t>(film.width()) + static_cast<size_t>(x);
                 const uint64_t end = plan.count(pixel, span.end);
                 for (uint64_t i = span.begin > 0 ? plan.count(pixel, span.begin) : 0; i < end; ++i) {
-                    samplePixel(camera_.filmX() + x, camera_.filmY() + y, span.first + i, scratch);
+                    samplePixel(camera_.filmX() + x, camera_.filmY() + y, span.first + i, plan.lightSamples(pixel),
+                                scratch);
                     statistics[pixel].add(i, scratch.sums.layer[0], std::sqrt(scratch.sums.photonVariance));
                     scratch.sums.photonVariance = 0;
                     scratch.sums.addTo(film, x, y);
@@ -94,7 +91,7 @@ void EyeTracer::render(Film& film, std::vector<SampleStatistics>& statistics, co
     });
 }
 
-void EyeTracer::samplePixel(int x, int y, uint64_t index, EyeScratch& scratch) const {
+void EyeTracer::samplePixel(int x, int y, uint64_t index, int lightSamples, EyeScratch& scratch) const {
     EyePath path;
     path.sampler = Sampler::pixel(seed_, settings_.stage, static_cast<uint32_t>(x), static_cast<uint32_t>(y), index);
     const Vec2 inPixel = path.sampler.next2D();
@@ -105,6 +102,7 @@ void EyeTracer::samplePixel(int x, int y, uint64_t index, EyeScratch& scratch) c
     path.state.reserved = reserveWavelength(scene_, path.sampler);
     path.mask = layers_.filter().eye();
     path.splits = settings_.splits;
+    path.lightSamples = lightSamples;
     path.width = ray.width;
     path.spread = ray.spread;
     scratch.branches.clear();
@@ -180,21 +178,17 @@ void EyeTracer::addEmitter(Rgb radiance, const PdfW& pdfW, const EyePath& path, 
     scratch.sums.contribute(layers_, path.state.rgb() * radiance * weight, layers_.filter().light(), path.mask);
 }
 
-int EyeTracer::lightSamples(const EyePath& path) const {
-    return settings_.quarterLights && !path.metDiffuse && !lights_.onePoint() ? kQuarters : 1;
-}
-
 void EyeTracer::addDirect(const Vertex& v, EyePath& path, EyeScratch& scratch) const {
     DirectLightQuery query;
-    const int samples = lightSamples(path);
+    const int samples = path.lightSamplesHere();
     query.bsdfSamples = path.bsdfSamples / static_cast<float>(samples);
     query.glossy = photons_ == nullptr || path.walk.samplesLight(glossyClass(v.bsdf));
     EyePathState diffuse = path.mask, glossy = path.mask;
     layers_.filter().prepend(diffuse, Event::Diffuse);
     layers_.filter().prepend(glossy, Event::Glossy);
     // Drawn even where nothing can count, so that filters never change the numbers of what follows.
-    const Vec2 u = path.sampler.next2D();
-    const float uLight = path.sampler.next();
+    const Vec2 onLight = path.sampler.next2D();
+    const LightNumbers u{path.sampler.next(), onLight};
     const LightPathState light = layers_.filter().light();
     if (layers_.hasOnly() && !scene_.hasThinWalls()) {
         query.diffuse &= layers_.counts(layers_.filter().accepted(light, diffuse));
@@ -204,9 +198,8 @@ void EyeTracer::addDirect(const Vertex& v, EyePath& path, EyeScratch& scratch) c
     const Rgb throughput = path.state.rgbAt(v) / static_cast<float>(samples);
     const LightChoice choice = lights_.at(litPlace(v));
     for (int i = 0; i < samples; ++i) {
-        const Vec2 onLight = samples == 1 ? u : inQuarter(u, i);
-        const float which = rotated(uLight, static_cast<float>(i) / static_cast<float>(samples));
-        const DirectLight d = sampleDirectLight(scene_, choice, v, query, which, onLight, scratch.walk);
+        const LightNumbers each = lightStratum(u, static_cast<uint32_t>(i), static_cast<uint32_t>(samples));
+        const DirectLight d = sampleDirectLight(scene_, choice, v, query, each.which, each.on, scratch.walk);
         LightPathState arriving = light;
         for (int k = 0; k < d.straightPassages; ++k) layers_.filter().append(arriving, Event::Specular);
         if (!isBlack(d.diffuse)) scratch.sums.contribute(layers_, throughput * d.diffuse, arriving, diffuse);
@@ -373,7 +366,7 @@ bool EyeTracer::step(const Vertex& v, const BsdfSample& sample, EyePath& path) c
             const BsdfEval f = evalBsdf(v.bsdf, v.wo, sample.wi);
             path.misPdf = sample.event == Event::Diffuse ? f.diffuse.pdfW : f.glossy.pdfW;
         }
-        path.misPdf *= path.bsdfSamples / static_cast<float>(lightSamples(path));
+        path.misPdf *= path.bsdfSamples / static_cast<float>(path.lightSamplesHere());
         path.bsdfSamples = 1;
         path.metDiffuse |= c == VertexClass::Diffuse;
     }

@@ -21,7 +21,6 @@ struct EyeSettings {
     float rouletteThreshold = 0.02F;  // throughput below which Russian roulette may end a path
     int freeDepth = 24;               // events after which it may end any
     int maxDepth = 0;                 // events; 0: no limit
-    bool quarterLights = false;       // samples light four times at the first diffuse vertex, else once
 };
 
 struct SampleSpan {
@@ -51,7 +50,7 @@ class EyeTracer {
                 RunContext& run, EyeCounters& counters) const;
 
   private:
-    void samplePixel(int x, int y, uint64_t index, EyeScratch& scratch) const;
+    void samplePixel(int x, int y, uint64_t index, int lightSamples, EyeScratch& scratch) const;
     void follow(EyePath& path, EyeScratch& scratch) const;
     void recordFirst(const Vertex& v, SampleSums& sums) const;
     void addEmission(const Vertex& v, const EyePath& path, EyeScratch& scratch) const;
@@ -59,7 +58,6 @@ class EyeTracer {
     // pdfW: gives the density with which light sampling at the last vertex would have drawn what is seen.
     template <typename PdfW>
     void addEmitter(Rgb radiance, const PdfW& pdfW, const EyePath& path, EyeScratch& scratch) const;
-    int lightSamples(const EyePath& path) const;  // at a vertex that the path has come to
     void addDirect(const Vertex& v, EyePath& path, EyeScratch& scratch) const;
     bool indirectFromMap(const Vertex& v) const;
     void addPhotons(const Vertex& v, const EyePath& path, EyeScratch& scratch) const;

@@ -49,6 +49,10 @@ class SamplePlan {
     // Samples of the pixel for each one of the mean, after the first.
     float rate(size_t pixel) const { return rates_.empty() ? 1 : rates_[pixel]; }
 
+    // Samples of the lights at a vertex, for each pixel: powers of four.
+    void sampleLights(std::vector<uint8_t> samples) { lightSamples_ = std::move(samples); }
+    int lightSamples(size_t pixel) const { return lightSamples_.empty() ? 1 : lightSamples_[pixel]; }
+
     // Samples of the pixel when the mean is `samples`, at least 1.
     uint64_t count(size_t pixel, double samples) const;
 
@@ -56,7 +60,8 @@ class SamplePlan {
     std::vector<float> noiseAround(const std::vector<SampleStatistics>& statistics) const;
 
     int width_, height_;
-    std::vector<float> rates_;  // empty: 1
+    std::vector<float> rates_;           // empty: 1
+    std::vector<uint8_t> lightSamples_;  // empty: 1
 };
 
 }  // namespace lsde

@@ -3,6 +3,7 @@
 
 #include "passes/eye_tracer.h"
 #include "passes/integrators/registry.h"
+#include "passes/light_effort.h"
 
 namespace lsde {
 
@@ -11,7 +12,9 @@ namespace {
 class EyeIntegrator : public Integrator {
   public:
     EyeIntegrator(const IntegratorInput& input, bool photons)
-        : lights_(input.scene, input.lights),
+        : scene_(input.scene),
+          camera_(input.camera),
+          lights_(input.scene, input.lights),
           film_(input.camera.filmWidth(), input.camera.filmHeight(), input.layers.filmLayers()),
           plan_(film_.width(), film_.height()),
           statistics_(static_cast<size_t>(film_.width()) * static_cast<size_t>(film_.height())),
@@ -20,7 +23,10 @@ class EyeIntegrator : public Integrator {
                   settings(photons), input.seed) {}
 
     void render(double begin, double end, RunContext& run) override {
-        if (!first_) first_ = static_cast<uint64_t>(begin);
+        if (!first_) {
+            first_ = static_cast<uint64_t>(begin);
+            if (adaptive_ && !lights_.onePoint()) plan_.sampleLights(planLightSamples(scene_, camera_, lights_, run));
+        }
         const auto uniform = static_cast<double>(*first_ + SamplePlan::kUniform);
         if (adaptive_ && begin < uniform && end >= uniform) {
             sample(begin, uniform, run);
@@ -53,13 +59,14 @@ class EyeIntegrator : public Integrator {
         s.stage = photons ? Stage::Camera : Stage::Reference;
         if (!photons) return s;
         s.indirectBranches = 2;
-        s.quarterLights = true;
         // What a gather or a lamp adds may be a thousand times the pixel: seen by chance alone it would be a bright
         // dot.
         s.rouletteThreshold = s.splitThreshold = 2e-4F;
         return s;
     }
 
+    const Scene& scene_;
+    const Camera& camera_;
     LightSampler lights_;
     Film film_;
     SamplePlan plan_;
