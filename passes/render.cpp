@@ -56,7 +56,8 @@ double samplesForError(const Integrator& integrator, double done, double limit) 
 double takeSamples(Integrator& integrator, const SampleLimits& limits, RunContext& run, bool& interrupted) {
     // Fractions are few, so that they are exact in decimal as well; less than the last is lost of the time.
     constexpr double kFraction = 1.0 / 64, kLeastStep = 1.0 / 16;
-    // Up to so many samples are taken at once where time ends: what they cost is then known well enough.
+    // Up to so many samples are taken at once where time ends, if it is known what they cost: those after the first go
+    // where there is most to do.
     constexpr double kLastSamples = 2, kSure = 0.95;
     const PhaseTimer timer(run, "camera");
     const auto first = static_cast<double>(limits.begin);
@@ -82,14 +83,15 @@ double takeSamples(Integrator& integrator, const SampleLimits& limits, RunContex
             continue;
         }
         const Clock& clock = *limits.clock;
-        // As the last ones: the first ones find out about the light, and later ones go where there is more to do.
+        const bool priceKnown = done - step >= SamplePlan::kUniform;
         const double used = clock.used() - start;
         const double perSample = (used - usedBefore) / step;
         usedBefore = used;
         const double affordable = (clock.left() - limits.reserve) / perSample;
         run.progress("camera", used / std::max(1e-9, clock.limit() - limits.reserve - start));
         if (affordable < (limits.whole ? 0.5 : kLeastStep)) break;
-        step = std::min((affordable > kLastSamples ? 0.5 : kSure) * affordable, 64.0);
+        step = std::min((priceKnown && affordable <= kLastSamples ? kSure : 0.5) * affordable, 64.0);
+        if (done < SamplePlan::kUniform) step = SamplePlan::kUniform - done;
         step = limits.whole ? std::max(1.0, std::floor(step)) : std::max(1.0, std::floor(step / kFraction)) * kFraction;
     }
     return done;

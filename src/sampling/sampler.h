@@ -8,7 +8,15 @@
 namespace lsde {
 
 // Which part of a run draws the numbers; stages are independent of each other.
-enum class Stage : uint32_t { Emission = 1, EmissionPilot = 2, Camera = 3, Reference = 4, LightTracer = 5, LightTrials = 6, Test = 99 };
+enum class Stage : uint32_t {
+    Emission = 1,
+    EmissionPilot = 2,
+    Camera = 3,
+    Reference = 4,
+    LightTracer = 5,
+    LightTrials = 6,
+    Test = 99
+};
 
 // One path's stream of dimensions. Two kinds behind one type, so that the walk knows neither:
 //   sequence: dimensions 0..kSobolDimensions-1 are an Owen-scrambled Sobol point by 64-bit index (Owen 1995; Burley
