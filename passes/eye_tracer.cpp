@@ -13,8 +13,6 @@ namespace {
 
 constexpr int kTile = 16;  // pixels
 
-float rotated(float u, float by) { return u + by < 1 ? u + by : u + by - 1; }
-
 }  // namespace
 
 struct EyePath {

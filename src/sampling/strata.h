@@ -1,7 +1,6 @@
 // One point of the unit cube shared out into many: samples of the lights at one vertex.
 #pragma once
 
-#include <algorithm>
 #include <bit>
 #include <cstdint>
 
@@ -9,6 +8,9 @@
 #include "sampling/low_discrepancy.h"
 
 namespace lsde {
+
+// A number of [0,1) shifted round it by `by` of [0,1) (Cranley & Patterson 1976).
+inline float rotated(float u, float by) { return u + by < 1 ? u + by : u + by - 1; }
 
 struct LightNumbers {
     float which = 0;  // chooses the light
@@ -25,10 +27,8 @@ inline LightNumbers lightStratum(LightNumbers u, uint32_t i, uint32_t count) {
     const auto cell = [&](int dimension) {
         return static_cast<float>(reverseBits(sobolReversed(i, dimension)) >> (32 - digits));
     };
-    const float side = static_cast<float>(1U << digits),
-                turned = u.which + static_cast<float>(i) / static_cast<float>(count);
-    return {std::min(turned < 1 ? turned : turned - 1, kOneMinusEpsilon),
-            glm::min((Vec2(cell(0), cell(1)) + u.on) / side, Vec2(kOneMinusEpsilon))};
+    const Vec2 on = (Vec2(cell(0), cell(1)) + u.on) / static_cast<float>(1U << digits);
+    return {rotated(u.which, static_cast<float>(i) / static_cast<float>(count)), glm::min(on, Vec2(kOneMinusEpsilon))};
 }
 
 }  // namespace lsde
