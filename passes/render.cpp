@@ -56,11 +56,11 @@ double samplesForError(const Integrator& integrator, double done, double limit) 
 double takeSamples(Integrator& integrator, const SampleLimits& limits, RunContext& run, bool& interrupted) {
     // Fractions are few, so that they are exact in decimal as well; less than the last is lost of the time.
     constexpr double kFraction = 1.0 / 64, kLeastStep = 1.0 / 16;
-    // Up to so many samples are taken at once where time ends, if it is known what they cost: those after the first go
-    // where there is most to do.
+    // What a sample costs is known while every pixel gets its first ones, and again when some were taken after them,
+    // which go where there is most to do: then up to so many are taken at once where time ends.
     constexpr double kLastSamples = 2, kSure = 0.95;
     const PhaseTimer timer(run, "camera");
-    const auto first = static_cast<double>(limits.begin);
+    const auto begin = static_cast<double>(limits.begin);
     double done = 0, step = 1;
     const double start = limits.clock ? limits.clock->used() : 0;
     double usedBefore = 0;
@@ -75,7 +75,7 @@ double takeSamples(Integrator& integrator, const SampleLimits& limits, RunContex
             step = limits.clock ? std::min(step, more) : more;
         }
         if (limits.count) step = std::min(step, *limits.count - done);
-        integrator.render(first + done, first + done + step, run);
+        integrator.render(begin + done, begin + done + step, run);
         done += step;
         if (!limits.clock) {
             run.progress("camera", done / limits.count.value_or(2 * done));
@@ -83,15 +83,15 @@ double takeSamples(Integrator& integrator, const SampleLimits& limits, RunContex
             continue;
         }
         const Clock& clock = *limits.clock;
-        const bool priceKnown = done - step >= SamplePlan::kUniform;
+        const bool first = done < SamplePlan::kUniform, adapted = done - step >= SamplePlan::kUniform;
         const double used = clock.used() - start;
         const double perSample = (used - usedBefore) / step;
         usedBefore = used;
         const double affordable = (clock.left() - limits.reserve) / perSample;
         run.progress("camera", used / std::max(1e-9, clock.limit() - limits.reserve - start));
         if (affordable < (limits.whole ? 0.5 : kLeastStep)) break;
-        step = std::min((priceKnown && affordable <= kLastSamples ? kSure : 0.5) * affordable, 64.0);
-        if (done < SamplePlan::kUniform) step = SamplePlan::kUniform - done;
+        const double share = first || (adapted && affordable <= kLastSamples) ? kSure : 0.5;
+        step = std::min(share * affordable, first ? SamplePlan::kUniform - done : 64.0);
         step = limits.whole ? std::max(1.0, std::floor(step)) : std::max(1.0, std::floor(step / kFraction)) * kFraction;
     }
     return done;
