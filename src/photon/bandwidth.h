@@ -47,6 +47,7 @@ struct BandwidthScratch {
     ScratchList<DensityScratch::Candidate> acceptedBlocks;
     // Records that another thread is just making: that of a place, and one of its neighbours.
     std::vector<Rgb> irradiance, neighbour;
+    std::vector<Rgb> mean;  // of two records
 };
 
 // Sorts what lies within the radius of the photon, about which scratch.surface is: blocks that count as one by their

@@ -256,6 +256,11 @@ bool IrradianceCache::nearest(const DensityQuery& query, Vec3 p, Record& record,
     return record.photonsPerRecord > 0;
 }
 
+bool IrradianceCache::tells(const Record& record, Vec3 p) const {
+    return record.bandwidth.count >= smoothCount_ &&
+           record.bandwidth.distance(p - photons_.position(record.photon)) < 1.5F * kNear * record.bandwidth.radius;
+}
+
 CachedLight IrradianceCache::at(const DensityQuery& query, bool wantIrradiance, BandwidthScratch& scratch) {
     CachedLight light;
     if (photons_.count == 0) return light;
@@ -269,21 +274,31 @@ CachedLight IrradianceCache::at(const DensityQuery& query, bool wantIrradiance, 
         static_cast<uint32_t>(static_cast<float>(there.count) * square(light.bandwidth.radius / there.radius));
     if (!wantIrradiance || light.bandwidth.count < smoothCount_ || light.bandwidth.radius < query.minRadius)
         return light;
+    const bool tellsHere = tells(record, p);
+    // The next search may be answered by the same spare memory.
+    std::vector<Rgb>& mean = scratch.mean;
+    mean.assign(record.irradiance.begin(), record.irradiance.end());
     const float spacing = std::sqrt(kInvPi * there.area() * static_cast<float>(record.photonsPerRecord) /
                                     static_cast<float>(there.count + 1));
     const Vec2 offset = std::min(spacing, 0.5F * there.radius) * hashedDiscPoint(p);
     const Frame frame(query.point.ng);
-    Record other;
-    if (nearest(query, p + offset.x * frame.x + offset.y * frame.y, other, scratch) &&
-        other.bandwidth.count >= smoothCount_ &&
-        other.bandwidth.distance(p - photons_.position(other.photon)) < 1.5F * kNear * other.bandwidth.radius) {
-        light.irradiance = other.irradiance;
-        light.variance = other.variance;
-        light.over = other.bandwidth;
-        if (query.point.ns != query.point.ng) {
-            const Vec3 ns = glm::dot(query.point.ns, query.sideNormal) > 0 ? query.point.ns : -query.point.ns;
-            light.shading = std::clamp(glm::dot(ns, other.arriving), 0.0F, kMaxShadingWeight);
-        }
+    Record moved;
+    const bool tellsMoved =
+        nearest(query, p + offset.x * frame.x + offset.y * frame.y, moved, scratch) && tells(moved, p);
+    if (!tellsHere && !tellsMoved) return light;
+    light.over = there;
+    if (tellsMoved) {
+        if (!tellsHere || moved.bandwidth.length() > there.length()) light.over = moved.bandwidth;
+        const float share = tellsHere ? 0.5F : 0;
+        for (size_t g = 0; g < mean.size(); ++g) mean[g] = glm::mix(moved.irradiance[g], mean[g], share);
+        record.variance = glm::mix(moved.variance, record.variance, share);
+        record.arriving = glm::mix(moved.arriving, record.arriving, share);
+    }
+    light.irradiance = mean;
+    light.variance = record.variance;
+    if (query.point.ns != query.point.ng) {
+        const Vec3 ns = glm::dot(query.point.ns, query.sideNormal) > 0 ? query.point.ns : -query.point.ns;
+        light.shading = std::clamp(glm::dot(ns, record.arriving), 0.0F, kMaxShadingWeight);
     }
     return light;
 }

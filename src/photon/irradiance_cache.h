@@ -24,7 +24,7 @@ struct CachedLight {
     Bandwidth bandwidth;
     // W/m2 by group, and last their sum, which does not depend on the groups. Empty: not known here, gather.
     std::span<const Rgb> irradiance;
-    // (W/m2)^2, of their sum, as the photons' number makes it; and over what it is a mean.
+    // (W/m2)^2, of their sum, as the photons' number makes it; and over what it is a mean, at most.
     Rgb variance{0};
     Bandwidth over;
     // What the query's shading normal makes of the irradiance: mean of |wi.Ns| / |wi.Ng|.
@@ -38,8 +38,9 @@ class IrradianceCache {
     IrradianceCache(const PhotonSource& source, const IrradianceRule& rule);
 
     // At the query's point, on its side and in its medium. Irradiance if it is wanted, and if the bandwidth is at least
-    // the query's least radius. What lies between records is dithered: the point is moved by about their distance, by a
-    // hash of its position, before the nearest one answers; the mean over many points is smooth.
+    // the query's least radius: the mean of two records', as far as they tell. One is nearest to the point; the other
+    // to the point moved by about the distance of records, by a hash of its position. That one's would be smooth in the
+    // mean over many points, but in a pixel's few the first halves the noise. Valid until the scratch's next use.
     CachedLight at(const DensityQuery& query, bool wantIrradiance, BandwidthScratch& scratch);
 
   private:
@@ -65,6 +66,8 @@ class IrradianceCache {
     };
     bool answers(Level& level, size_t run, const DensityQuery& query, Record& record, std::vector<Rgb>& spare,
                  BandwidthScratch& scratch);
+    // Whether the record's irradiance is known, and says something of p.
+    bool tells(const Record& record, Vec3 p) const;
     // False: none of the query's surface is near p.
     bool nearest(const DensityQuery& query, Vec3 p, Record& record, BandwidthScratch& scratch);
     bool sameSurface(const DensityQuery& query, uint32_t photon, BandwidthScratch& scratch) const;

@@ -90,6 +90,36 @@ TEST_CASE("where many photons are in a disc the cached irradiance is the light's
     CHECK(std::fabs(ratio.value() - 1) < 0.001 + 3 * ratio.standardError());
 }
 
+TEST_CASE("of points side by side the answers differ by less than the noise that they share") {
+    const Square square(43, 5000, 1);
+    IrradianceCache cache(square.source(), kManyPhotons);
+    BandwidthScratch scratch;
+    Random random(44);
+    test::Mean within, overall, overallSquared;
+    for (int place = 0; place < 400; ++place) {
+        const Vec3 p(random.between(-0.5F, 0.5F), random.between(-0.5F, 0.5F), 0);
+        test::Mean value, squared;
+        for (int i = 0; i < 16; ++i) {
+            const Vec3 offset(random.between(-1e-4F, 1e-4F), random.between(-1e-4F, 1e-4F), 0);
+            const CachedLight light = cache.at(queryFrom(p + offset), true, scratch);
+            if (light.irradiance.empty()) continue;
+            // It answers for no less than the record that told the bandwidth.
+            CHECK(light.over.length() >= light.bandwidth.length());
+            const auto e = static_cast<double>(light.irradiance.back().y) / 10'000;
+            value.add(e);
+            squared.add(e * e);
+        }
+        if (value.value() == 0) continue;  // no answers
+        within.add(squared.value() - value.value() * value.value());
+        overall.add(value.value());
+        overallSquared.add(value.value() * value.value());
+    }
+    const double share = within.value() / (overallSquared.value() - overall.value() * overall.value());
+    MESSAGE("variance side by side over that from place to place: ", share);
+    CHECK(share < 0.08);  // 0.17 if a single record answers
+    CHECK(share > 0.01);  // it is dithered
+}
+
 TEST_CASE("light that rises evenly is where it belongs, whichever way it rises") {
     // Records of 64 photons stand for places 11 cm wide.
     for (const Vec3 rise : {Vec3(0.8F, 0, 0), Vec3(0, 0.8F, 0), Vec3(0.4F, -0.5F, 0)}) {  // per metre
@@ -104,14 +134,14 @@ TEST_CASE("light that rises evenly is where it belongs, whichever way it rises")
             }
             rising.sumBlocks();
             IrradianceCache ofEven(even.source(), kManyPhotons), ofRising(rising.source(), kManyPhotons);
-            BandwidthScratch scratch;
+            BandwidthScratch scratch, scratchOfRising;
             Random random(seed);
             test::Mean here;
             for (int i = 0; i < 500; ++i) {
                 // Beside what the same photons say of even light, little is left to chance.
                 const Vec3 p(random.between(-0.4F, 0.4F), random.between(-0.4F, 0.4F), 0);
                 const CachedLight a = ofEven.at(queryFrom(p), true, scratch);
-                const CachedLight b = ofRising.at(queryFrom(p), true, scratch);
+                const CachedLight b = ofRising.at(queryFrom(p), true, scratchOfRising);
                 if (a.irradiance.empty() || b.irradiance.empty()) continue;
                 here.add(static_cast<double>(b.irradiance.back().y / (brightness(p) * a.irradiance.back().y)) - 1);
             }
@@ -294,14 +324,14 @@ TEST_CASE("block by block the irradiance, its groups and its direction are those
     square.sumBlocks();
     const PhotonSource source = square.source(2, true), slow = square.source(2, false);
     IrradianceCache blocks(source, kGiven), photons(slow, kGiven);
-    BandwidthScratch scratch;
+    BandwidthScratch scratch, scratchOfPhotons;
     Random random(1);
     int known = 0;
     test::Mean red, first;
     for (int i = 0; i < 300; ++i) {
         DensityQuery query = queryFrom({random.between(-0.5F, 0.5F), random.between(-0.5F, 0.5F), 0});
         query.point.ns = glm::normalize(Vec3(0.05F, 0, 1));
-        const CachedLight a = blocks.at(query, true, scratch), b = photons.at(query, true, scratch);
+        const CachedLight a = blocks.at(query, true, scratch), b = photons.at(query, true, scratchOfPhotons);
         REQUIRE(a.irradiance.size() == b.irradiance.size());
         if (a.irradiance.empty()) continue;
         ++known;
