@@ -141,8 +141,7 @@ PathGroups groupsOf(const GatherInput& input, const PhotonTreeView& tree, RunCon
 }  // namespace
 
 RadiusRule grown(RadiusRule rule, uint64_t photons) {
-    constexpr double kPhotonsOfRule = 1e6;
-    const auto growth = static_cast<float>(std::cbrt(square(static_cast<double>(photons) / kPhotonsOfRule)));
+    const auto growth = static_cast<float>(std::cbrt(square(static_cast<double>(photons) / rule.photons)));
     if (growth <= 1) return rule;
     uint32_t& mostCount = rule.irradiance.bandwidth.mostCount;
     mostCount = static_cast<uint32_t>(static_cast<float>(mostCount) * growth);

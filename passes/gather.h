@@ -52,8 +52,9 @@ struct ProgressiveRadius {
     float scale = 1;  // also of the width over which wavelengths count as one
 };
 
-// Of one class, for up to a million photons.
+// Of one class.
 struct RadiusRule {
+    double photons = 0;  // of the class, for up to which it is
     IrradianceRule irradiance;
     float reachAtMean = 0;     // photons of the class's mean density that the largest bandwidth holds
     uint32_t minCount = 0;     // photons that the radius grows to hold where the bandwidth is less
@@ -68,8 +69,8 @@ RadiusRule grown(RadiusRule rule, uint64_t photons);
 
 struct GatherSettings {
     IndexKind index = IndexKind::Kd;
-    RadiusRule caustic{{{20, 2000, 2.5F}, 300}, 1600, 20, 80, 0.5F};
-    RadiusRule indirect{{{50, 8000, 2}, 25}, 8000, 50, 400, 0};
+    RadiusRule caustic{3.5e5, {{20, 2000, 2.5F}, 300}, 1600, 20, 80, 0.5F};
+    RadiusRule indirect{1e6, {{50, 8000, 2}, 25}, 8000, 50, 400, 0};
     bool indirectFromMap = true;  // where the map holds that class
     // Width of the kernel by which a dispersed path from the eye takes dispersed photons of other wavelengths.
     float wavelengthShare = 0.1F;
