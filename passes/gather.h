@@ -54,7 +54,7 @@ struct ProgressiveRadius {
 
 // Of one class.
 struct RadiusRule {
-    double photons = 0;  // of the class, for up to which it is
+    double photons = 0;  // in the class, up to which the largest bandwidth stays as it is; see grown()
     IrradianceRule irradiance;
     float reachAtMean = 0;     // photons of the class's mean density that the largest bandwidth holds
     uint32_t minCount = 0;     // photons that the radius grows to hold where the bandwidth is less

@@ -28,6 +28,8 @@ constexpr uint32_t mostCountOf(uint32_t photonsPerRecord) { return 31 * photonsP
 
 // And for a point that is closer than this share of the disc's radius.
 constexpr float kNear = 0.4F;
+// If none stands for a point, the irradiance of one as close as this share is better than none.
+constexpr float kStillNear = 1.5F * kNear;
 
 // Blocks that may tell of each other: those of a run.
 constexpr size_t kNeighbours = 4;
@@ -190,6 +192,10 @@ void IrradianceCache::recordOf(Level& level, size_t slot, Record& record, std::v
     record.irradiance = kept;
 }
 
+float IrradianceCache::distance(const Record& record, Vec3 p) const {
+    return record.bandwidth.distance(p - photons_.position(record.photon));
+}
+
 bool IrradianceCache::sameSurface(const DensityQuery& query, uint32_t photon, BandwidthScratch& scratch) const {
     const DensityQuery there = queryAt(source_, photon);
     if (there.medium != query.medium || glm::dot(there.sideNormal, query.sideNormal) < kSameDirection) return false;
@@ -236,8 +242,7 @@ bool IrradianceCache::answers(Level& level, size_t run, const DensityQuery& quer
     record.photonsPerRecord = level.photonsPerRecord;
     recordOf(level, place->slot, record, spare, scratch);
     return record.bandwidth.count >= kRunsInDisc * level.photonsPerRecord &&
-           record.bandwidth.distance(query.point.position - photons_.position(record.photon)) <
-               kNear * record.bandwidth.radius;
+           distance(record, query.point.position) < kNear * record.bandwidth.radius;
 }
 
 bool IrradianceCache::nearest(const DensityQuery& query, Vec3 p, Record& record, BandwidthScratch& scratch) {
@@ -257,8 +262,7 @@ bool IrradianceCache::nearest(const DensityQuery& query, Vec3 p, Record& record,
 }
 
 bool IrradianceCache::tells(const Record& record, Vec3 p) const {
-    return record.bandwidth.count >= smoothCount_ &&
-           record.bandwidth.distance(p - photons_.position(record.photon)) < 1.5F * kNear * record.bandwidth.radius;
+    return record.bandwidth.count >= smoothCount_ && distance(record, p) < kStillNear * record.bandwidth.radius;
 }
 
 CachedLight IrradianceCache::at(const DensityQuery& query, bool wantIrradiance, BandwidthScratch& scratch) {
@@ -269,7 +273,7 @@ CachedLight IrradianceCache::at(const DensityQuery& query, bool wantIrradiance, 
     if (!nearest(query, p, record, scratch)) return light;
     const Bandwidth& there = record.bandwidth;
     light.bandwidth.along = there.along;
-    light.bandwidth.radius = std::max(0.0F, there.radius - there.distance(p - photons_.position(record.photon)));
+    light.bandwidth.radius = std::max(0.0F, there.radius - distance(record, p));
     light.bandwidth.count =
         static_cast<uint32_t>(static_cast<float>(there.count) * square(light.bandwidth.radius / there.radius));
     if (!wantIrradiance || light.bandwidth.count < smoothCount_ || light.bandwidth.radius < query.minRadius)

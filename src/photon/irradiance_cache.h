@@ -24,7 +24,7 @@ struct CachedLight {
     Bandwidth bandwidth;
     // W/m2 by group, and last their sum, which does not depend on the groups. Empty: not known here, gather.
     std::span<const Rgb> irradiance;
-    // (W/m2)^2, of their sum, as the photons' number makes it; and over what it is a mean, at most.
+    // (W/m2)^2, of their sum, as the photons' number makes it; and the longest bandwidth that it is a mean over.
     Rgb variance{0};
     Bandwidth over;
     // What the query's shading normal makes of the irradiance: mean of |wi.Ns| / |wi.Ng|.
@@ -66,6 +66,8 @@ class IrradianceCache {
     };
     bool answers(Level& level, size_t run, const DensityQuery& query, Record& record, std::vector<Rgb>& spare,
                  BandwidthScratch& scratch);
+    // In m, of p from the record's photon, by its bandwidth's norm.
+    float distance(const Record& record, Vec3 p) const;
     // Whether the record's irradiance is known, and says something of p.
     bool tells(const Record& record, Vec3 p) const;
     // False: none of the query's surface is near p.
