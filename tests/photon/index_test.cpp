@@ -3,7 +3,6 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cstring>
 #include <functional>
 #include <limits>
 #include <string>
@@ -87,24 +86,6 @@ void checkAgreement(const PhotonTree& tree, uint32_t seed) {
         REQUIRE(std::equal(a.begin(), a.end(), c.begin(), c.end()));
         REQUIRE(std::equal(b.begin(), b.end(), c.begin(), c.end()));
     }
-}
-
-std::vector<PackedPhoton> randomPhotons(size_t count, uint32_t seed) {
-    Random random(seed);
-    std::vector<PackedPhoton> photons;
-    for (size_t i = 0; i < count; ++i) photons.push_back(pack(test::randomPhoton(random, i)));
-    // The same place with other payloads, and photons that are equal in all.
-    for (size_t i = 0; i + 1 < count; i += 5) photons[i].position = photons[i + 1].position;
-    for (size_t i = 0; i + 9 < count; i += 9) photons[i] = photons[i + 2];
-    for (size_t i = 0; i < count; i += 2) photons[i].position.z = 0.25F;
-    return photons;
-}
-
-bool sameBytes(const PhotonTree& a, const PhotonTree& b) {
-    const auto same = [](const auto& x, const auto& y) {
-        return x.size() == y.size() && (x.empty() || std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0);
-    };
-    return a.count == b.count && same(a.blocks, b.blocks) && same(a.nodes, b.nodes) && same(a.payload, b.payload);
 }
 
 }  // namespace
@@ -193,38 +174,6 @@ TEST_CASE("photons of equal distance are taken by index") {
     KdIndex(view(tree)).nearest({0.5F, 0.5F, 0}, 100, kInfinity, found);
     REQUIRE(found.size() == 100);
     for (uint32_t i = 0; i < 100; ++i) CHECK(found[i].index == i);
-}
-
-TEST_CASE("a tree depends on the set of its photons only, not on their order or on threads") {
-    for (const size_t count : {1, 16, 100, 1000, 150'000}) {
-        std::vector<PackedPhoton> photons = randomPhotons(count, 5);
-        const auto build = [&](int threads) {
-            ThreadPool pool(threads);
-            return buildPhotonTree(std::vector(photons), pool);
-        };
-        const PhotonTree tree = build(1);
-        for (const uint32_t seed : {1U, 2U}) {
-            std::shuffle(photons.begin(), photons.end(), std::mt19937(seed));
-            CHECK(sameBytes(tree, build(1)));
-            CHECK(sameBytes(tree, build(4)));
-        }
-    }
-}
-
-TEST_CASE("a tree holds exactly its photons") {
-    const std::vector<PackedPhoton> photons = randomPhotons(5000, 6);
-    ThreadPool pool(2);
-    const PhotonTree tree = buildPhotonTree(std::vector(photons), pool);
-    std::vector<PackedPhoton> held, expected = photons;
-    for (uint32_t i = 0; i < tree.count; ++i) held.push_back({view(tree).position(i), tree.payload[i]});
-    std::sort(held.begin(), held.end());
-    std::sort(expected.begin(), expected.end());
-    REQUIRE(held.size() == expected.size());
-    for (size_t i = 0; i < held.size(); ++i) REQUIRE((!(held[i] < expected[i]) && !(expected[i] < held[i])));
-    Bounds bounds;
-    for (const PackedPhoton& p : photons) bounds.grow(p.position);
-    CHECK(tree.bounds.lo == bounds.lo);
-    CHECK(tree.bounds.hi == bounds.hi);
 }
 
 TEST_CASE("a photon at no finite place is refused") {

@@ -274,44 +274,6 @@ TEST_CASE("normals as far apart as a cosine of 0.95 share their irradiance, othe
     }
 }
 
-TEST_CASE("what the cache says depends neither on who asks first nor on the threads") {
-    const Square square(7, 5000, 20);
-    constexpr size_t kQueries = 4000;
-    const auto position = [](size_t i) {
-        return Vec3(toUnitFloat(static_cast<uint32_t>(mix64(i))) - 0.5F,
-                    toUnitFloat(static_cast<uint32_t>(mix64(i) >> 32)) - 0.5F, 0);
-    };
-    struct Answer {
-        Bandwidth bandwidth;
-        std::vector<Rgb> irradiance;
-    };
-    const auto ask = [&](int threads, bool backwards) {
-        IrradianceCache cache(square.source(), kRule);
-        // Each of them twice: halves of the range run at the same time, so that threads meet at records in the making.
-        std::vector<Answer> answers(2 * kQueries);
-        ThreadPool pool(threads);
-        pool.forRange(2 * kQueries, 16, [&](size_t begin, size_t end) {
-            BandwidthScratch scratch;
-            for (size_t i = begin; i < end; ++i) {
-                const size_t at = backwards ? 2 * kQueries - 1 - i : i;
-                const CachedLight light = cache.at(queryFrom(position(at % kQueries)), true, scratch);
-                answers[at].bandwidth = light.bandwidth;
-                answers[at].irradiance.assign(light.irradiance.begin(), light.irradiance.end());
-            }
-        });
-        return answers;
-    };
-    const std::vector<Answer> one = ask(1, false);
-    for (const bool backwards : {false, true}) {
-        const std::vector<Answer> two = ask(2, backwards);
-        for (size_t i = 0; i < two.size(); ++i) {
-            REQUIRE(one[i].bandwidth.radius == two[i].bandwidth.radius);
-            REQUIRE(one[i].bandwidth.count == two[i].bandwidth.count);
-            REQUIRE(one[i].irradiance == two[i].irradiance);
-        }
-    }
-}
-
 TEST_CASE("block by block the irradiance, its groups and its direction are those photon by photon") {
     // Least and most the same: the bandwidth is given, what differs is the sum.
     constexpr IrradianceRule kGiven{{2000, 2000, 2.5F}, 300};
