@@ -9,9 +9,9 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
-#include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/json.h"
 #include "image/png.h"
 #include "passes/compare.h"
 #include "passes/emit.h"

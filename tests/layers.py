@@ -37,6 +37,7 @@ OWNERS = [
     (re.compile(r'flann/'), 'src/photon/flann_index.cpp'),
     (re.compile(r'(OpenEXR/|Imath/|Imf|Imath|Iex|half\.h)'), 'src/image/exr.cpp'),
     (re.compile(r'(oneapi/)?tbb/'), 'src/base/parallel_tbb.cpp'),
+    (re.compile(r'nlohmann/json\.hpp'), 'src/base/json.h'),
 ]
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
@@ -106,6 +107,7 @@ SEEDED = [
     ('src/photon/density.cpp', '#include "scene/scene.h"', 'photon may not use scene'),
     ('src/base/ray.h', '  #  include "path/event.h"', 'base may not use path'),
     ('passes/camera.cpp', '#include "passes/integrators/registry.h"', 'stages may not use integrators'),
+    ('src/photon/map_header.cpp', '#include <nlohmann/json.hpp>', 'only src/base/json.h'),
     ('src/sampling/warp.cpp', '#include "warp.h"', 'not of the form'),
     ('src/scene/scene.cpp', '#include <embree3/rtcore.h>', 'only src/scene/accel.cpp'),
     ('src/photon/kd_index.cpp', '#include <tbb/parallel_sort.h>', 'only src/base/parallel_tbb.cpp'),

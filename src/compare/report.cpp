@@ -7,11 +7,11 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/gtc/packing.hpp>
-#include <nlohmann/json.hpp>
 #include <string_view>
 #include <vector>
 
 #include "base/error.h"
+#include "base/json.h"
 #include "compare/pixel_error.h"
 #include "compare/report_page.h"
 

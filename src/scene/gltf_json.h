@@ -4,10 +4,11 @@
 
 #include <cfloat>
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "base/json.h"
 
 namespace lsde {
 

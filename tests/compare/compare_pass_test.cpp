@@ -1,11 +1,11 @@
 #include <doctest/doctest.h>
 
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <numeric>
 #include <string>
 
 #include "base/error.h"
+#include "base/json.h"
 #include "compare/pictures.h"
 #include "image/exr.h"
 #include "passes/compare.h"

@@ -4,9 +4,9 @@
 
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <string>
 
+#include "base/json.h"
 #include "compare/pictures.h"
 #include "image/exr.h"
 #include "store/fixture.h"

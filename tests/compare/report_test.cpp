@@ -8,10 +8,10 @@
 #include <cmath>
 #include <glm/gtc/packing.hpp>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "base/json.h"
 #include "compare/pictures.h"
 
 using namespace lsde;

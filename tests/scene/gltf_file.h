@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <filesystem>
 #include <initializer_list>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "base/json.h"
 #include "scene/gltf.h"
 #include "store/fixture.h"
 
