@@ -6,6 +6,7 @@
 #include "support/statistics.h"
 
 using namespace lsde;
+using test::queryFrom;
 using test::Random;
 using test::Square;
 
@@ -14,15 +15,6 @@ namespace {
 constexpr IrradianceRule kRule{{20, 1000, 2.5F}, 50};
 constexpr IrradianceRule kManyPhotons{{20, 1000, 2.5F}, 400};
 constexpr IrradianceRule kFewPhotons{{20, 100, 2.5F}, 20};
-
-DensityQuery queryFrom(Vec3 position, Vec3 side = {0, 0, 1}) {
-    DensityQuery query;
-    query.point.position = position;
-    query.point.ng = query.point.ns = {0, 0, 1};
-    query.sideNormal = side;
-    query.maxRadius = 0.5F;
-    return query;
-}
 
 }  // namespace
 

@@ -51,4 +51,14 @@ struct Square {
     }
 };
 
+// At a point of the square, lit from that side.
+inline DensityQuery queryFrom(Vec3 position, Vec3 side = {0, 0, 1}) {
+    DensityQuery query;
+    query.point.position = position;
+    query.point.ng = query.point.ns = {0, 0, 1};
+    query.sideNormal = side;
+    query.maxRadius = 0.5F;
+    return query;
+}
+
 }  // namespace lsde::test

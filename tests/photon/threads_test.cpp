@@ -8,6 +8,7 @@
 #include "photon/square.h"
 
 using namespace lsde;
+using test::queryFrom;
 using test::Random;
 using test::Square;
 
@@ -86,11 +87,7 @@ TEST_CASE("what the cache says depends neither on who asks first nor on the thre
             BandwidthScratch scratch;
             for (size_t i = begin; i < end; ++i) {
                 const size_t at = backwards ? 2 * kQueries - 1 - i : i;
-                DensityQuery query;
-                query.point.position = position(at % kQueries);
-                query.point.ng = query.point.ns = query.sideNormal = {0, 0, 1};
-                query.maxRadius = 0.5F;
-                const CachedLight light = cache.at(query, true, scratch);
+                const CachedLight light = cache.at(queryFrom(position(at % kQueries)), true, scratch);
                 answers[at].bandwidth = light.bandwidth;
                 answers[at].irradiance.assign(light.irradiance.begin(), light.irradiance.end());
             }
