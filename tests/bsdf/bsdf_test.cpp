@@ -109,7 +109,8 @@ void forEachRow(const std::function<void(const Bsdf&, Vec3 wo)>& f) {
 
 }  // namespace
 
-TEST_CASE("directions are drawn with the density that evaluation states, lobe by lobe") {
+TEST_CASE("directions are drawn with the density that evaluation states, lobe by lobe" *
+          doctest::test_suite("statistics")) {
     int tests = 0;
     for (const BsdfRow& row : bsdfRows())
         tests += (hasDiffuseLobe(row.bsdf) ? 4 : 0) + (hasGlossyLobe(row.bsdf) ? 4 : 0);
@@ -186,7 +187,7 @@ TEST_CASE("who asks for less gets the same of it") {
         }
 }
 
-TEST_CASE("sampling and quadrature find the same reflectance") {
+TEST_CASE("sampling and quadrature find the same reflectance" * doctest::test_suite("statistics")) {
     uint32_t seed = 4;
     forEachRow([&](const Bsdf& bsdf, Vec3 wo) {
         const MeanWeight sampled = sampledReflectance(bsdf, wo, sampleBsdf, seed++).total;
@@ -205,7 +206,8 @@ TEST_CASE("no surface gives back more light than it gets, but for the glTF mix a
     });
 }
 
-TEST_CASE("delta lobes and samples of the rest add up to samples of the whole, event by event") {
+TEST_CASE("delta lobes and samples of the rest add up to samples of the whole, event by event" *
+          doctest::test_suite("statistics")) {
     uint32_t seed = 5;
     forEachRow([&](const Bsdf& bsdf, Vec3 wo) {
         const SampledReflectance whole = sampledReflectance(bsdf, wo, sampleBsdf, seed++);

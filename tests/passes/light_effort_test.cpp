@@ -66,7 +66,7 @@ TEST_CASE("a penumbra seen through glass is one as well") {
     CHECK(rangeOf(planOf(*scene.build()), 24, 40).least == kManyLightSamples);
 }
 
-TEST_CASE("a lamp close to the floor is as bright by many samples as by one") {
+TEST_CASE("a lamp close to the floor is as bright by many samples as by one" * doctest::test_suite("statistics")) {
     SceneBuilder scene;
     scene.add(plate({0, 0, 0}, 4), lambert(Rgb(0.5F)));
     scene.add(plate({0, 0.2F, 0}, 0.3F, false), emitter(Rgb(1)));

@@ -77,7 +77,8 @@ Bias biasOnPoissonMaps(const DensityQuery& query) {
 
 }  // namespace
 
-TEST_CASE("an ellipse estimates an even density without bias, with the variance of as large a disc") {
+TEST_CASE("an ellipse estimates an even density without bias, with the variance of as large a disc" *
+          doctest::test_suite("statistics")) {
     DensityQuery query = queryAtOrigin(0, 0.1F, 0.1F);
     const Bias narrow = biasOnPoissonMaps(query);
     query.minRadius = 0.2F;
@@ -130,7 +131,8 @@ TEST_CASE("the kernel has mass 1, and the share within a radius is its integral"
     CHECK(epanechnikovWithin(1) == 1);
 }
 
-TEST_CASE("the estimate of a uniform density has no bias in any regime of the radius") {
+TEST_CASE("the estimate of a uniform density has no bias in any regime of the radius" *
+          doctest::test_suite("statistics")) {
     const struct {
         std::string name;
         uint32_t minCount;
@@ -146,7 +148,7 @@ TEST_CASE("the estimate of a uniform density has no bias in any regime of the ra
     }
 }
 
-TEST_CASE("that a radius must be balanced adds no bias where light is even") {
+TEST_CASE("that a radius must be balanced adds no bias where light is even" * doctest::test_suite("statistics")) {
     for (const auto& [minCount, minRadius] : {std::pair(20U, 0.001F), std::pair(20U, 0.25F), std::pair(50U, 0.001F)}) {
         DensityQuery query = queryAtOrigin(minCount, minRadius, 0.9F);
         query.balanced = true;

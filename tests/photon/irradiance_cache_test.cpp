@@ -112,7 +112,7 @@ TEST_CASE("of points side by side the answers differ by less than the noise that
     CHECK(share > 0.01);  // it is dithered
 }
 
-TEST_CASE("light that rises evenly is where it belongs, whichever way it rises") {
+TEST_CASE("light that rises evenly is where it belongs, whichever way it rises" * doctest::test_suite("statistics")) {
     // Records of 64 photons stand for places 11 cm wide.
     for (const Vec3 rise : {Vec3(0.8F, 0, 0), Vec3(0, 0.8F, 0), Vec3(0.4F, -0.5F, 0)}) {  // per metre
         test::Mean above;
@@ -209,7 +209,7 @@ TEST_CASE("light on the back of a sheet takes hardly any answers away, and chang
     CHECK(std::fabs(ratio.value() - 1) < 0.003 + 3 * ratio.standardError());
 }
 
-TEST_CASE("beside an edge the cached irradiance is that of its own side") {
+TEST_CASE("beside an edge the cached irradiance is that of its own side" * doctest::test_suite("statistics")) {
     // Density 2000 and 100000 photons a m2. 3 cm from the edge even discs of 50 photons of the bright side end.
     double darkMost = 0;
     test::Mean dark, bright;
