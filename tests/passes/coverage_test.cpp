@@ -43,8 +43,7 @@ Mean meanRadiance(const Scene& scene, const std::string& integrator) {
 
 }  // namespace
 
-TEST_CASE("in a white furnace what covers half of the rest is not seen, and a black veil takes its share" *
-          doctest::test_suite("statistics")) {
+TEST_CASE("in a white furnace what covers half of the rest is not seen, and a black veil takes its share") {
     for (const bool thinWalls : {false, true})
         for (const char* integrator : {"path", "photon"}) {
             CAPTURE(thinWalls);

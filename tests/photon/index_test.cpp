@@ -99,7 +99,7 @@ TEST_CASE("all indices find the same photons at the same distances") {
         }
 }
 
-TEST_CASE("all indices find the same among a million photons" * doctest::test_suite("statistics")) {
+TEST_CASE("all indices find the same among a million photons") {
     // A cube, a plane, a focus and a coarse grid at once: from sparse to 3000 photons at one place.
     const size_t mixed[] = {0, 1, 3, 5};
     Random random(8);
