@@ -149,7 +149,7 @@ class Outputs(Cli):
             self.run_lsde('info', old, '--verify')
 
     def test_an_interrupted_emission_is_saved_and_resumed_to_the_byte(self):
-        photons = ['--photons', '1200000', '--threads', '1']
+        photons = ['--photons', '3000000', '--threads', '1']
         self.run_lsde('emit', SPHERE, '-o', 'whole.lsmap', *photons, '--quiet')
         # How long it takes before the first paths are done depends on the machine.
         for delay in (0.3, 0.6, 1.2, 2.4, 4.8):
