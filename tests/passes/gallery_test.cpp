@@ -87,11 +87,13 @@ struct Mean {
     const char* paths;
     int rows;
     glm::dvec3 radiance;
-    double tolerance;  // the noise of 200,000 paths, and what kernels and cached irradiance are off by
+    double tolerance;  // the picture's noise, and what kernels and cached irradiance are off by
 };
 
 void checkPicture(const std::string& name, const std::vector<Mean>& means) {
-    PictureSettings s = settingsFor("photon", 32, 6);
+    // Means by 200,000 paths and 6 samples differ by .6 to .9%: it would depend on how a processor rounds which of them
+    // are within the tolerances.
+    PictureSettings s = settingsFor("photon", 32, 24, 800'000);
     for (const Mean& mean : means)
         s.paths.push_back({mean.paths == std::string("LS+DE") ? "thrown" : "seen", mean.paths});
     const RenderResult result = render(sceneOf(exhibit(name)), s);
@@ -144,14 +146,14 @@ TEST_CASE("a small picture of the wine glass is as bright as light tracing has i
                  {{"LS+DE", 32, {0.01169, 0.00699, 0.00568}, 0.015}, {"L.*DE", 32, {0.2540, 0.2247, 0.1851}, 0.003}});
 }
 
-// The ceiling alone: six samples of thin brass tubes, whose kernels are small and mostly empty, say little.
+// The ceiling alone: a few samples of thin brass tubes, whose kernels are small and mostly empty, say little.
 TEST_CASE("so is the ceiling over the chandelier") {
     checkPicture("chandelier",
-                 {{"LS+DE", 8, {0.4061, 0.3220, 0.2196}, 0.02}, {"L.*DE", 8, {0.5074, 0.3653, 0.2364}, 0.02}});
+                 {{"LS+DE", 8, {0.4061, 0.3220, 0.2196}, 0.01}, {"L.*DE", 8, {0.5074, 0.3653, 0.2364}, 0.01}});
 }
 
 TEST_CASE("so are the borders of the pool") { checkPicture("pool-net", {{"L.*DE", 32, {4785, 4094, 3895}, 0.008}}); }
 
 TEST_CASE("so is the room behind glass blocks") {
-    checkPicture("glass-blocks", {{"LS+DE", 32, {607.6, 568.5, 476.7}, 0.05}, {"L.*DE", 32, {1168, 1070, 868}, 0.05}});
+    checkPicture("glass-blocks", {{"LS+DE", 32, {607.6, 568.5, 476.7}, 0.03}, {"L.*DE", 32, {1168, 1070, 868}, 0.03}});
 }
