@@ -18,13 +18,20 @@ enum State : uint8_t { kUnknown, kInTheMaking, kKnown };
 constexpr float kSameDirection = 0.95F;
 constexpr float kSteepest = 0.32F;  // sine of that angle
 
-// Lengths of the runs that have a record, in blocks.
-constexpr std::array<uint32_t, 3> kBlocksPerRecord = {16, 4, 1};
+// Runs of a length that have records, the longest first.
+struct RunLength {
+    uint32_t blocks;
+    // Of the rule's largest disc, photons from which on they are made: below, few of their records would stand for
+    // their runs, and shorter ones be made as well.
+    uint32_t leastOfRule;
+    // Of their records' discs: the denser records are, the cheaper they must be.
+    uint32_t mostCount;
+};
+constexpr std::array<RunLength, 5> kRunLengths = {
+    {{256, 131072, 262144}, {64, 32768, 65536}, {16, 2048, 16384}, {4, 512, 2496}, {1, 0, 1008}}};
 
 // A record stands for its run if its disc holds as many photons as this many runs.
 constexpr uint32_t kRunsInDisc = 8;
-// Records that are dense must be cheap: a bound on their photons, between that need and what the rule asks for.
-constexpr uint32_t mostCountOf(uint32_t photonsPerRecord) { return 31 * photonsPerRecord + 512; }
 
 // And for a point that is closer than this share of the disc's radius.
 constexpr float kNear = 0.4F;
@@ -86,15 +93,13 @@ Vec2 hashedDiscPoint(Vec3 p) {
 
 IrradianceCache::IrradianceCache(const PhotonSource& source, const IrradianceRule& rule)
     : source_(source), photons_(source.photons()), smoothCount_(rule.smoothCount) {
-    for (const uint32_t blocks : kBlocksPerRecord) {
-        const uint32_t photonsPerRecord = blocks * kBlockSize;
-        // Longer runs than the rule's largest disc allows would never be used.
-        if (blocks > 1 && rule.bandwidth.mostCount < kRunsInDisc * photonsPerRecord) continue;
-        const size_t runs = (photons_.blocks.size() + blocks - 1) / blocks;
+    for (const RunLength& length : kRunLengths) {
+        if (rule.bandwidth.mostCount < length.leastOfRule) continue;
+        const size_t runs = (photons_.blocks.size() + length.blocks - 1) / length.blocks;
         Level& level = levels_.emplace_back();
-        level.photonsPerRecord = photonsPerRecord;
+        level.photonsPerRecord = length.blocks * kBlockSize;
         level.rule = rule.bandwidth;
-        level.rule.mostCount = std::min(level.rule.mostCount, mostCountOf(photonsPerRecord));
+        level.rule.mostCount = std::min(level.rule.mostCount, length.mostCount);
         const size_t slots = kSides * runs;
         level.offsets = {slots, source.place};
         level.states = {slots, source.place};
