@@ -12,6 +12,8 @@ namespace lsde {
 namespace {
 
 constexpr int kTile = 16;  // pixels
+// Of the random numbers: which photons are gathered. No branch of a path has it.
+constexpr uint32_t kPhotonBranch = ~0U;
 
 }  // namespace
 
@@ -226,6 +228,8 @@ void EyeTracer::addPhotons(const Vertex& v, const EyePath& path, EyeScratch& scr
     query.glossyFromAll = glossyIsWide;
     query.glossyFromFlagged = glossyGathers;
     query.wavelength = path.state.wavelengthAt(v);
+    if (!std::holds_alternative<DiffuseBsdf>(v.bsdf) || v.surface.ns != v.surface.ng)
+        query.u = path.sampler.fork(kPhotonBranch).next();
     addGathered(photons_->caustic(), query, v, path, scratch);
     if ((glossyIsWide || glossyGathers) && glossyLobePasses(v.bsdf)) {
         PhotonGatherQuery through = query;

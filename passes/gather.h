@@ -22,6 +22,7 @@ struct PhotonGatherQuery {
     bool glossyFromAll = false;      // the glossy lobe takes every photon (it is of class Diffuse)
     bool glossyFromFlagged = false;  // the glossy lobe takes flagged photons
     WavelengthId wavelength = kAllWavelengths;  // of the path from the eye
+    float u = 0;  // in [0,1), even over samples: which photons, where some of them will do
 };
 
 // Radiance by the group of paths that the photons took, in the picture's channels: wavelengths have been weighed.

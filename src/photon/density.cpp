@@ -108,6 +108,18 @@ void acceptPhotons(const PhotonTreeView& tree, const DensityQuery& query, float 
     accepted.resizeWithin(static_cast<size_t>(end - begin));
 }
 
+void acceptInLeast(const PhotonTreeView& tree, const DensityQuery& query, DensityScratch& scratch) {
+    const float radiusSquared = square(query.minRadius);
+    acceptPhotons(tree, query, query.minRadius * stretchOf(query.along), scratch.found, scratch.accepted);
+    DensityScratch::Candidate* end = scratch.accepted.begin();
+    for (const DensityScratch::Candidate& c : scratch.accepted) {
+        const Vec3 offset = tree.position(c.index) - query.point.position;
+        const float elongated = elongatedSquared(query.along, offset, c.distanceSquared);
+        if (std::max(elongated, c.planeSquared) < radiusSquared) *end++ = {c.index, elongated, c.planeSquared};
+    }
+    scratch.accepted.resizeWithin(static_cast<size_t>(end - scratch.accepted.begin()));
+}
+
 float radiusSquaredHolding(uint32_t count, float radius, DensityScratch& scratch) {
     const size_t size = scratch.accepted.size();
     scratch.entries.clear();

@@ -20,7 +20,8 @@ struct DensityQuery {
     // Whether a grown radius must not reach light that lies to one side, beyond an edge: it shrinks until it does not.
     // For surfaces that go on in all directions.
     bool balanced = false;
-    Vec3 along{0};  // the least radius is the half width of an ellipse (photon/bandwidth.h); 0: a disc
+    Vec3 along{0};       // the least radius is the half width of an ellipse (photon/bandwidth.h); 0: a disc
+    float expected = 0;  // photons within the least radius, roughly; 0: not known
 };
 
 // An ellipse is where |offset|^2 - (along.offset)^2 is less than the square of its half width. m2, and the ratio of its
@@ -85,27 +86,37 @@ inline bool liesToOneSide(Vec3 moment, double squares, double tolerance) {
 float balancedRadiusSquared(const PhotonTreeView& tree, const DensityQuery& query, float radiusSquared,
                             const DensityScratch& scratch);
 
+// Of the photons found, those that count in the query's ellipse, or disc, of the least radius; their distances are by
+// its norm.
+void acceptInLeast(const PhotonTreeView& tree, const DensityQuery& query, DensityScratch& scratch);
+
 // The photons of the query's ellipse, as gatherPhotons has those of a disc; none and false, if they are fewer than it
 // wants.
 template <PhotonIndex Index, typename Take>
 bool gatherEllipse(const Index& index, const DensityQuery& query, DensityScratch& scratch, Take&& take,
                    GatheredDisc& ellipse) {
     ellipse = {query.minRadius, 0, stretchOf(query.along)};
-    const float radiusSquared = square(query.minRadius), length = query.minRadius * ellipse.stretch;
-    index.within(query.point.position, length, scratch.found);
-    acceptPhotons(index.tree(), query, length, scratch.found, scratch.accepted);
-    DensityScratch::Candidate* const begin = scratch.accepted.begin();
-    DensityScratch::Candidate* end = begin;
-    for (const DensityScratch::Candidate& c : scratch.accepted) {
-        const Vec3 offset = index.tree().position(c.index) - query.point.position;
-        const float elongated = elongatedSquared(query.along, offset, c.distanceSquared);
-        if (std::max(elongated, c.planeSquared) < radiusSquared) *end++ = {c.index, elongated, c.planeSquared};
-    }
-    ellipse.accepted = static_cast<uint32_t>(end - begin);
+    index.within(query.point.position, query.minRadius * ellipse.stretch, scratch.found);
+    acceptInLeast(index.tree(), query, scratch);
+    ellipse.accepted = static_cast<uint32_t>(scratch.accepted.size());
     if (ellipse.accepted < query.minCount) return false;
-    for (const DensityScratch::Candidate* c = begin; c != end; ++c)
-        take(c->index, epanechnikov(c->distanceSquared, radiusSquared) / ellipse.stretch);
+    for (const DensityScratch::Candidate& c : scratch.accepted)
+        take(c.index, epanechnikov(c.distanceSquared, square(query.minRadius)) / ellipse.stretch);
     return true;
+}
+
+// Every n-th photon of the query's disc or ellipse of the least radius, with n times its weight: for discs of so many
+// that each sample of a pixel may do with some of them. Without bias if `every` is drawn evenly.
+template <typename Take>
+GatheredDisc gatherSome(const PhotonTreeView& tree, const DensityQuery& query, EveryNth every, DensityScratch& scratch,
+                        Take&& take) {
+    const float stretch = stretchOf(query.along);
+    KdIndex(tree).someWithin(query.point.position, query.minRadius * stretch, every, scratch.found);
+    acceptInLeast(tree, query, scratch);
+    const float scale = static_cast<float>(every.stride) / stretch;
+    for (const DensityScratch::Candidate& c : scratch.accepted)
+        take(c.index, scale * epanechnikov(c.distanceSquared, square(query.minRadius)));
+    return {query.minRadius, static_cast<uint32_t>(scratch.accepted.size()), stretch};
 }
 
 // Calls take(index, weight) for each photon that counts in the disc around the query's point: the sum of

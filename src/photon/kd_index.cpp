@@ -160,6 +160,23 @@ void KdIndex::within(Vec3 centre, float radius, NeighbourList& out) const {
     SphereSearch(tree_, shape_, sphere, take).run();
 }
 
+void KdIndex::someWithin(Vec3 centre, float radius, EveryNth every, NeighbourList& out) const {
+    out.clear();
+    if (shape_.levels == 0 || !isFinite(centre)) return;
+    const lanes::Sphere8 sphere(centre.x, centre.y, centre.z, radius * radius);
+    const auto take = [&](std::span<const uint32_t> blocks) {
+        for (const uint32_t b : blocks) {
+            const uint64_t begin = uint64_t{kBlockSize} * b, end = std::min(begin + kBlockSize, tree_.count);
+            for (uint64_t i = every.from(begin); i < end; i += every.stride) {
+                const auto photon = static_cast<uint32_t>(i);
+                const float distanceSquared = lengthSquared(tree_.position(photon) - centre);
+                if (distanceSquared < radius * radius) out.push({photon, distanceSquared});
+            }
+        }
+    };
+    SphereSearch(tree_, shape_, sphere, take).run();
+}
+
 void KdIndex::blocksWithin(Vec3 centre, float radius, ScratchList<uint32_t>& out) const {
     out.clear();
     if (shape_.levels == 0 || !isFinite(centre)) return;

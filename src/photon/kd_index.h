@@ -90,6 +90,16 @@ float guessRadius(const PhotonTreeView& tree, Vec3 centre, uint32_t count);
 // The next radius to try where `found` of `wanted` photons were in this one.
 float grownRadius(float radius, uint64_t wanted, uint64_t found);
 
+// One photon in `stride` of a tree, in its order: those whose numbers are `first` modulo `stride`, a power of two.
+// Neighbours in the tree are neighbours in space, so that these lie evenly among the others.
+struct EveryNth {
+    uint32_t stride = 1;
+    uint32_t first = 0;
+
+    // The least of these numbers from `begin` on.
+    uint64_t from(uint64_t begin) const { return begin + ((first - begin) & (stride - 1)); }
+};
+
 class KdIndex {
   public:
     explicit KdIndex(const PhotonTreeView& tree) : tree_(tree), shape_(tree.count) {}
@@ -97,6 +107,8 @@ class KdIndex {
 
     // All photons with distanceSquared < radius^2, by ascending index; what was in `out` before is cleared.
     void within(Vec3 centre, float radius, NeighbourList& out) const;
+    // Those of them that are among every n-th.
+    void someWithin(Vec3 centre, float radius, EveryNth every, NeighbourList& out) const;
     // The numbers of the blocks whose boxes come that near, ascending; and, appended, the photons of one of them.
     void blocksWithin(Vec3 centre, float radius, ScratchList<uint32_t>& out) const;
     void appendWithin(uint32_t block, Vec3 centre, float radius, NeighbourList& out) const;

@@ -117,6 +117,50 @@ TEST_CASE("an ellipse holds what its norm says, of those off the plane what a di
     CHECK(estimate(photons, query).disc.stretch == 1);
 }
 
+TEST_CASE("every n-th photon with n times its weight has the light of all, in the mean over where one begins") {
+    constexpr uint32_t kStride = 8;
+    for (const bool mixed : {false, true}) {
+        Random random(3);
+        std::vector<Photon> photons;
+        for (int i = 0; i < 4000; ++i) {
+            const float z = mixed ? random.between(-0.1F, 0.1F) : 0;
+            photons.push_back(photonAt({random.between(-1, 1), random.between(-1, 1), z}));
+            photons.back().medium = static_cast<uint16_t>(mixed && i % 3 == 0);
+        }
+        const PhotonTree tree = treeOf(photons);
+        for (const float stretch : {1.0F, 2.0F}) {
+            CAPTURE(mixed);
+            CAPTURE(stretch);
+            DensityQuery query = queryAtOrigin(0, 0.4F, 0.4F);
+            query.along = std::sqrt(1 - 1 / square(stretch)) * Vec3(0.6F, 0.8F, 0);
+            const Estimate all = estimate(KdIndex(view(tree)), query);
+            DensityScratch scratch;
+            std::vector<uint32_t> taken;
+            double mean = 0, variance = 0;
+            for (uint32_t first = 0; first < kStride; ++first) {
+                double density = 0;
+                const size_t before = taken.size();
+                const auto take = [&](uint32_t i, float weight) {
+                    density += static_cast<double>(weight);
+                    taken.push_back(i);
+                };
+                const GatheredDisc disc = gatherSome(view(tree), query, {kStride, first}, scratch, take);
+                CHECK(disc.radius == query.minRadius);
+                CHECK(disc.stretch == doctest::Approx(stretch));
+                CHECK(disc.accepted == taken.size() - before);
+                mean += density / kStride;
+                variance += square(density / all.density - 1) / kStride;
+            }
+            std::sort(taken.begin(), taken.end());
+            CHECK(taken == all.taken);
+            CHECK(mean == doctest::Approx(all.density));
+            // Drawn by chance as many would have a variance of 4/3 of one over their number, with this kernel. Every
+            // n-th lies evenly.
+            if (!mixed) CHECK(variance < 0.1 * (4 / 3.0) * kStride / static_cast<double>(all.disc.accepted));
+        }
+    }
+}
+
 TEST_CASE("the kernel has mass 1, and the share within a radius is its integral") {
     double mass = 0;
     constexpr int kSteps = 10'000;

@@ -99,6 +99,32 @@ TEST_CASE("all indices find the same photons at the same distances") {
         }
 }
 
+TEST_CASE("every n-th of the photons within a radius, from each place on, are all of them") {
+    Random random(5);
+    NeighbourList all, some;
+    for (const Cloud& cloud : kClouds)
+        for (const size_t count : {0, 1, 17, 1025, 5000}) {
+            CAPTURE(cloud.name);
+            CAPTURE(count);
+            const PhotonTree tree = treeOf(pointsOf(cloud, count));
+            const KdIndex kd(view(tree));
+            const float size = tree.count == 0 ? 1 : glm::length(tree.bounds.extent()) + 1e-9F;
+            for (const uint32_t stride : {1U, 2U, 16U, 64U}) {
+                const Vec3 centre = queryPoint(tree, random, static_cast<int>(stride));
+                const float radius = size * std::pow(10.0F, random.between(-2, 0.7F));
+                std::vector<Neighbour> together;
+                for (uint32_t first = 0; first < stride; ++first) {
+                    kd.someWithin(centre, radius, {stride, first}, some);
+                    for (const Neighbour& n : some) REQUIRE(n.index % stride == first);
+                    together.insert(together.end(), some.begin(), some.end());
+                }
+                std::sort(together.begin(), together.end());
+                kd.within(centre, radius, all);
+                REQUIRE(together == sorted(all));
+            }
+        }
+}
+
 TEST_CASE("all indices find the same among a million photons") {
     // A cube, a plane, a focus and a coarse grid at once: from sparse to 3000 photons at one place.
     const size_t mixed[] = {0, 1, 3, 5};
