@@ -228,8 +228,7 @@ void EyeTracer::addPhotons(const Vertex& v, const EyePath& path, EyeScratch& scr
     query.glossyFromAll = glossyIsWide;
     query.glossyFromFlagged = glossyGathers;
     query.wavelength = path.state.wavelengthAt(v);
-    if (!std::holds_alternative<DiffuseBsdf>(v.bsdf) || v.surface.ns != v.surface.ng)
-        query.u = path.sampler.fork(kPhotonBranch).next();
+    if (!scattersAlike(v.bsdf, query.point)) query.u = path.sampler.fork(kPhotonBranch).next();
     addGathered(photons_->caustic(), query, v, path, scratch);
     if ((glossyIsWide || glossyGathers) && glossyLobePasses(v.bsdf)) {
         PhotonGatherQuery through = query;

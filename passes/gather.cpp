@@ -162,6 +162,10 @@ RadiusRule grown(RadiusRule rule, uint64_t photons) {
     return rule;
 }
 
+bool scattersAlike(const Bsdf& bsdf, const SurfacePoint& point) {
+    return std::holds_alternative<DiffuseBsdf>(bsdf) && glm::dot(point.ng, point.ns) > kFlat;
+}
+
 ClassGather::ClassGather(const GatherInput& input, PhotonClass c, const GatherSettings& settings,
                          const RadiusRule& rule, const ProgressiveRadius& progressive, RunContext& run)
     : tree_(input.map.photons(c)),
@@ -262,14 +266,14 @@ const GatheredLight& ClassGather::gather(const PhotonGatherQuery& query, const B
     if (!surface.whole() && surface.creaseNear(query.point.position, density.minRadius * stretchOf(density.along)))
         density.along = Vec3(0);
     const auto* diffuse = std::get_if<DiffuseBsdf>(&bsdf);
-    const bool flat = diffuse != nullptr && glm::dot(query.point.ng, query.point.ns) > kFlat;
+    const bool alike = scattersAlike(bsdf, query.point);
     const Receiver receiver{query, bsdf, frame, wo, glossyLobePasses(bsdf), packNormal(query.point.ng)};
     GatheredPaths total;
     Rgb squares(0);
     // Of those with a wavelength only what has about the eye's counts.
     const float enough = kEnoughScattered / (query.wavelength == kAllWavelengths ? 1 : wavelengthShare_);
     // A narrow lobe takes few of them: all.
-    const EveryNth every = flat || query.glossyFromFlagged ? EveryNth() : someOf(density, enough, query.u);
+    const EveryNth every = alike || query.glossyFromFlagged ? EveryNth() : someOf(density, enough, query.u);
     const auto take = [&](uint32_t i, float kernel) {
         const PhotonPayload& p = tree_.payload[i];
         const uint16_t group = groups_.of(i);
@@ -282,7 +286,7 @@ const GatheredLight& ClassGather::gather(const PhotonGatherQuery& query, const B
             std::find_if(out.paths.begin(), out.paths.end(), [&](const GatheredPaths& g) { return g.group == group; });
         if (at == out.paths.end()) at = out.paths.insert(at, {group});
         GatheredPaths light;
-        if (flat)
+        if (alike)
             light.diffuse = match.power * kernel;
         else
             scatterPhoton(p, match.power * kernel, receiver, light, scratch);

@@ -25,6 +25,10 @@ struct PhotonGatherQuery {
     float u = 0;  // in [0,1), even over samples: which photons, where some of them will do
 };
 
+// Whether the surface scatters all light that arrives on one side alike, so that no photon's direction matters: a
+// Lambertian one whose normals agree. Elsewhere some of a wide disc's photons will do, chosen by PhotonGatherQuery::u.
+bool scattersAlike(const Bsdf& bsdf, const SurfacePoint& point);
+
 // Radiance by the group of paths that the photons took, in the picture's channels: wavelengths have been weighed.
 struct GatheredPaths {
     uint16_t group = 0;

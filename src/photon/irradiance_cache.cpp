@@ -1,5 +1,6 @@
 #include "photon/irradiance_cache.h"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <bit>
@@ -18,6 +19,9 @@ enum State : uint8_t { kUnknown, kInTheMaking, kKnown };
 constexpr float kSameDirection = 0.95F;
 constexpr float kSteepest = 0.32F;  // sine of that angle
 
+// A record stands for its run if its disc holds as many photons as this many runs.
+constexpr uint32_t kRunsInDisc = 8;
+
 // Runs of a length that have records, the longest first.
 struct RunLength {
     uint32_t blocks;
@@ -29,9 +33,11 @@ struct RunLength {
 };
 constexpr std::array<RunLength, 5> kRunLengths = {
     {{256, 131072, 262144}, {64, 32768, 65536}, {16, 2048, 16384}, {4, 512, 2496}, {1, 0, 1008}}};
-
-// A record stands for its run if its disc holds as many photons as this many runs.
-constexpr uint32_t kRunsInDisc = 8;
+// Records that could never stand for their runs would be made for nothing; single blocks have them all the same.
+static_assert(std::all_of(kRunLengths.begin(), kRunLengths.end(), [](const RunLength& length) {
+    const uint32_t needed = kRunsInDisc * kBlockSize * length.blocks;
+    return length.mostCount >= needed && (length.blocks == 1 || length.leastOfRule >= needed);
+}));
 
 // And for a point that is closer than this share of the disc's radius.
 constexpr float kNear = 0.4F;

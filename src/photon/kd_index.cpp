@@ -63,6 +63,14 @@ class SphereSearch {
     const Take& take_;
 };
 
+template <typename Take>
+void takeTouched(const PhotonTreeView& tree, const KdShape& shape, Vec3 centre, const lanes::Sphere8& sphere,
+                 const Take& take) {
+    // Against a coordinate that is not finite, empty boxes would not be infinitely far.
+    if (shape.levels == 0 || !isFinite(centre)) return;
+    SphereSearch(tree, shape, sphere, take).run();
+}
+
 Neighbour* appendPhotons(const PhotonTreeView& tree, uint32_t block, const lanes::Sphere8& sphere, Neighbour* end) {
     for (const uint32_t first : {0U, kBlockSize / 2}) {
         const __m256 distance = lanes::distanceToPhotons(tree.blocks[block], first, sphere);
@@ -144,10 +152,8 @@ PhotonTreeView view(const PhotonTree& tree) { return {tree.count, tree.bounds, t
 
 void KdIndex::within(Vec3 centre, float radius, NeighbourList& out) const {
     out.clear();
-    // Against a coordinate that is not finite, empty boxes would not be infinitely far.
-    if (shape_.levels == 0 || !isFinite(centre)) return;
     const lanes::Sphere8 sphere(centre.x, centre.y, centre.z, radius * radius);
-    const auto take = [&](std::span<const uint32_t> blocks) {
+    takeTouched(tree_, shape_, centre, sphere, [&](std::span<const uint32_t> blocks) {
         for (const uint32_t b : blocks.first(std::min(kAhead, blocks.size()))) lanes::prefetch(tree_.blocks[b]);
         Neighbour* const begin = out.room(kBlockSize * blocks.size());
         Neighbour* end = begin;
@@ -156,15 +162,13 @@ void KdIndex::within(Vec3 centre, float radius, NeighbourList& out) const {
             end = appendPhotons(tree_, blocks[i], sphere, end);
         }
         out.resizeWithin(out.size() + static_cast<size_t>(end - begin));
-    };
-    SphereSearch(tree_, shape_, sphere, take).run();
+    });
 }
 
 void KdIndex::someWithin(Vec3 centre, float radius, EveryNth every, NeighbourList& out) const {
     out.clear();
-    if (shape_.levels == 0 || !isFinite(centre)) return;
     const lanes::Sphere8 sphere(centre.x, centre.y, centre.z, radius * radius);
-    const auto take = [&](std::span<const uint32_t> blocks) {
+    takeTouched(tree_, shape_, centre, sphere, [&](std::span<const uint32_t> blocks) {
         for (const uint32_t b : blocks) {
             const uint64_t begin = uint64_t{kBlockSize} * b, end = std::min(begin + kBlockSize, tree_.count);
             for (uint64_t i = every.from(begin); i < end; i += every.stride) {
@@ -173,19 +177,16 @@ void KdIndex::someWithin(Vec3 centre, float radius, EveryNth every, NeighbourLis
                 if (distanceSquared < radius * radius) out.push({photon, distanceSquared});
             }
         }
-    };
-    SphereSearch(tree_, shape_, sphere, take).run();
+    });
 }
 
 void KdIndex::blocksWithin(Vec3 centre, float radius, ScratchList<uint32_t>& out) const {
     out.clear();
-    if (shape_.levels == 0 || !isFinite(centre)) return;
     const lanes::Sphere8 sphere(centre.x, centre.y, centre.z, radius * radius);
-    const auto take = [&](std::span<const uint32_t> blocks) {
+    takeTouched(tree_, shape_, centre, sphere, [&](std::span<const uint32_t> blocks) {
         std::copy(blocks.begin(), blocks.end(), out.room(blocks.size()));
         out.resizeWithin(out.size() + blocks.size());
-    };
-    SphereSearch(tree_, shape_, sphere, take).run();
+    });
 }
 
 void KdIndex::appendWithin(uint32_t block, Vec3 centre, float radius, NeighbourList& out) const {
