@@ -6,7 +6,7 @@ namespace lsde {
 
 namespace {
 
-constexpr uint64_t kPathsPerChunk = 512;
+constexpr uint64_t kPathsPerTask = 512;
 
 float powerOf(const PhotonPayload& p) {
     const Rgb power = unpackPower(p.power);
@@ -42,9 +42,9 @@ class PilotIrradiance {
 
 std::vector<LightPaths> tracePilot(LightTracerInput input, uint64_t paths, ThreadPool& pool) {
     input.stage = Stage::EmissionPilot;
-    std::vector<LightPaths> results(paths / kPathsPerChunk);
+    std::vector<LightPaths> results(paths / kPathsPerTask);
     pool.forEach(results.size(), [&](size_t i) {
-        results[i] = traceLightPaths(input, pathsInOrder(i * kPathsPerChunk, kPathsPerChunk));
+        results[i] = traceLightPaths(input, pathsInOrder(i * kPathsPerTask, kPathsPerTask));
     });
     return results;
 }

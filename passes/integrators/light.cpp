@@ -12,7 +12,7 @@ namespace lsde {
 
 namespace {
 
-constexpr uint64_t kPathsPerChunk = 16384;
+constexpr uint64_t kLightPathsPerChunk = 16384;
 constexpr int kLongestPath = 1000;  // events; Russian roulette ends paths long before
 
 // A splat's place and value, kept until the chunk's end.
@@ -36,10 +36,10 @@ class LightIntegrator : public Integrator {
     void render(double begin, double end, RunContext& run) override {
         const uint64_t first = pathsOf(begin), last = pathsOf(end);
         std::mutex mutex;
-        run.pool.forEach((last - first + kPathsPerChunk - 1) / kPathsPerChunk, [&](size_t chunk) {
+        run.pool.forEach((last - first + kLightPathsPerChunk - 1) / kLightPathsPerChunk, [&](size_t chunk) {
             run.checkInterrupt();
             Tracer tracer{*this, {}, {}, {}, 0};
-            const uint64_t from = first + chunk * kPathsPerChunk, to = std::min(last, from + kPathsPerChunk);
+            const uint64_t from = first + chunk * kLightPathsPerChunk, to = std::min(last, from + kLightPathsPerChunk);
             for (uint64_t path = from; path < to; ++path) tracer.trace(path);
             const std::scoped_lock lock(mutex);
             for (const Splat& s : tracer.splats)

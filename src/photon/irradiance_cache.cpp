@@ -54,7 +54,7 @@ constexpr size_t kSides = 2;
 constexpr uint16_t kNoPhoton = 0xffff;
 
 // Photons that tell where a record's light came from, about.
-constexpr uint32_t kDirections = 64;
+constexpr uint32_t kTellDirection = 64;
 
 // Of the photons [first, end) that count, the one nearest to the middle of their blocks' boxes. A record there lies
 // evenly among the points for which it stands; at one to a side (the middle one of their order is the first beyond the
@@ -132,7 +132,7 @@ void IrradianceCache::make(Record& record, const BandwidthRule& rule, std::span<
         asked += power;
     };
     const auto sum = [](std::span<const Rgb> powers) { return std::accumulate(powers.begin(), powers.end(), Rgb(0)); };
-    const uint32_t each = 1 + record.bandwidth.count / kDirections;
+    const uint32_t each = 1 + record.bandwidth.count / kTellDirection;
     const Vec3 along = record.bandwidth.along, middle = photons_.position(record.photon);
     const bool byBlocks =
         along == Vec3(0) && record.bandwidth.count >= kLeastOfBlocks &&

@@ -15,7 +15,7 @@ namespace lsde {
 namespace {
 
 constexpr double kPiD = std::numbers::pi;
-constexpr double kDegree = kPiD / 180;
+constexpr double kDegreeD = kPiD / 180;
 constexpr float kSunRadius = 0.265F * kPi / 180;
 // The sky is smooth: interpolation between texels of a third of a degree is within 1e-3 of it, but for the horizon.
 constexpr int kRows = 512;
@@ -45,7 +45,7 @@ struct SkyModel {
           x(perezX(s.turbidity)),
           y(perezY(s.turbidity)),
           toSun(sunDirection(s)),
-          sunTheta((90 - static_cast<double>(s.sunElevationDeg)) * kDegree) {
+          sunTheta((90 - static_cast<double>(s.sunElevationDeg)) * kDegreeD) {
         zenith = zenithOf(s.turbidity, sunTheta);
     }
 
@@ -138,7 +138,7 @@ void check(const SkySettings& s) {
 }  // namespace
 
 Vec3 sunDirection(const SkySettings& s) {
-    const double elevation = s.sunElevationDeg * kDegree, azimuth = s.sunAzimuthDeg * kDegree;
+    const double elevation = s.sunElevationDeg * kDegreeD, azimuth = s.sunAzimuthDeg * kDegreeD;
     return glm::normalize(glm::dvec3(std::cos(elevation) * std::sin(azimuth), std::sin(elevation),
                                      std::cos(elevation) * std::cos(azimuth)));
 }
@@ -149,7 +149,7 @@ Rgb sunRadiance(const SkySettings& s) {
     constexpr double kLumensPerWatt = 683;
     const double elevation = s.sunElevationDeg;
     // Kasten's optical air mass (1966).
-    const double airMass = 1 / (std::sin(elevation * kDegree) + 0.15 * std::pow(3.885 + elevation, -1.253));
+    const double airMass = 1 / (std::sin(elevation * kDegreeD) + 0.15 * std::pow(3.885 + elevation, -1.253));
     glm::dvec3 xyz(0);
     for (size_t i = 0; i < kSunSpectrum.size(); ++i) {
         const double nm = kFirstNm + kStepNm * static_cast<double>(i);

@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include <random>
+#include "support/random.h"
 
 using namespace lsde;
 
@@ -10,19 +10,8 @@ namespace {
 
 using DVec3 = glm::dvec3;
 
-class Random {
-  public:
-    float in(float lo, float hi) { return std::uniform_real_distribution<float>(lo, hi)(engine_); }
-    Vec3 vector(float size) { return {in(-size, size), in(-size, size), in(-size, size)}; }
-    Vec3 direction() {
-        Vec3 v(0);
-        while (lengthSquared(v) < 1e-4F || lengthSquared(v) > 1) v = vector(1);
-        return glm::normalize(v);
-    }
-
-  private:
-    std::mt19937_64 engine_{9};
-};
+// In a cube of edge 2 size around the origin.
+Vec3 vectorIn(test::Random& random, float size) { return size * (2.0F * random.inCube() - 1.0F); }
 
 // Signed distance from the plane through a, b, c, without the rounding of floats.
 double planeDistance(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
@@ -46,20 +35,20 @@ TEST_CASE("an origin moves to the side into which the ray leaves") {
 }
 
 TEST_CASE("an offset origin lies on the ray's side of its triangle, and near it, from 1 cm to 1 km") {
-    Random random;
+    test::Random random(9);
     for (const float size : {0.01F, 1.0F, 1000.0F})
         for (int i = 0; i < 50000; ++i) {
-            const Vec3 centre = random.vector(size);
-            const float edge = size * std::pow(10.0F, random.in(-4, 0));
-            const Vec3 a = centre + random.vector(edge), b = centre + random.vector(edge),
-                       c = centre + random.vector(edge);
+            const Vec3 centre = vectorIn(random, size);
+            const float edge = size * std::pow(10.0F, random.between(-4, 0));
+            const Vec3 a = centre + vectorIn(random, edge), b = centre + vectorIn(random, edge),
+                       c = centre + vectorIn(random, edge);
             const Vec3 cross = glm::cross(b - a, c - a);
             // Slivers have no normal in single precision.
             if (glm::length(cross) < 0.01F * square(edge)) continue;
             const Vec3 ng = glm::normalize(cross);
-            const float u = random.in(0, 1), v = random.in(0, 1 - u);
+            const float u = random.between(0, 1), v = random.between(0, 1 - u);
             const Vec3 p = (1 - u - v) * a + u * b + v * c;
-            const Vec3 leaving = random.direction();
+            const Vec3 leaving = random.onSphere();
             const float epsilon = surfaceEpsilon(largestCoordinates(a, b, c), 0);
             const double distance = planeDistance(offsetOrigin(p, ng, leaving, epsilon), a, b, c);
             CAPTURE(size);

@@ -7,21 +7,18 @@
 #include <numbers>
 
 #include "bsdf/rows.h"
+#include "bsdf/smith.h"
 #include "support/chi_squared.h"
 #include "support/random.h"
 
 using namespace lsde;
 using doctest::Approx;
 using test::directionAt;
+using test::smithG1;
 
 namespace {
 
 constexpr double kPiDouble = std::numbers::pi;
-
-double smithG1(double cosTheta, double alpha) {
-    const double tan2 = (1 - square(cosTheta)) / square(cosTheta);
-    return 2 / (1 + std::sqrt(1 + square(alpha) * tan2));
-}
 
 // One channel of glTF 2.0 appendix B with KHR_materials_specular.
 struct Specification {

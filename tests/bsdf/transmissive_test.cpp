@@ -9,12 +9,14 @@
 
 #include "bsdf/bsdf.h"
 #include "bsdf/rows.h"
+#include "bsdf/smith.h"
 #include "support/chi_squared.h"
 #include "support/random.h"
 
 using namespace lsde;
 using doctest::Approx;
 using test::directionAt;
+using test::smithG1;
 using Vec3d = glm::dvec3;
 
 namespace {
@@ -31,10 +33,6 @@ double fresnel(double cosI, double etaT) {
 double ggx(double cosH, double alpha) {
     const double tan2 = 1 / square(cosH) - 1;
     return 1 / (std::numbers::pi * square(alpha) * square(square(cosH)) * square(1 + tan2 / square(alpha)));
-}
-
-double smithG1(double cosTheta, double alpha) {
-    return 2 / (1 + std::sqrt(1 + square(alpha) * (1 / square(cosTheta) - 1)));
 }
 
 // Walter et al. 2007, eq. 21: light comes from i, in a medium of index etaI, and leaves to o; n is up.

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "compare/pictures.h"
-#include "image/exr.h"
 
 using namespace lsde;
 
@@ -36,10 +35,6 @@ void checkPair(const RgbImage& image, const RgbImage& reference, const Recorded&
     CHECK(std::abs(range.stop - exposures.stop) < 1e-5);
     CHECK(range.count == exposures.count);
     checkMap(hdrFlip(image, reference, range, pool), hdr);
-}
-
-RgbImage recordedPicture(const std::string& name) {
-    return readExr(std::string(LSDE_TEST_DATA) + "/reference/" + name + ".exr").layer("");
 }
 
 }  // namespace

@@ -8,7 +8,6 @@
 
 #include "base/json.h"
 #include "compare/pictures.h"
-#include "image/exr.h"
 #include "store/fixture.h"
 
 using namespace lsde;
@@ -20,10 +19,6 @@ constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN();
 Figures figuresOf(const RgbImage& image, const RgbImage& reference) {
     ThreadPool pool;
     return comparePictures(image, reference, pool).figures;
-}
-
-RgbImage recordedPicture(const std::string& name) {
-    return readExr(std::string(LSDE_TEST_DATA) + "/reference/" + name + ".exr").layer("");
 }
 
 }  // namespace

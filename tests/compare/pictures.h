@@ -1,9 +1,11 @@
-// Small pictures by formula, so that other programs can make the same ones (record_oracles.py).
+// Small pictures by formula, so that other programs can make the same ones (record_oracles.py), and recorded ones.
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "base/math.h"
+#include "image/exr.h"
 #include "image/image.h"
 
 namespace lsde {
@@ -32,6 +34,11 @@ inline RgbImage testPicture(int discX, double disc, double noise) {
                 image.at(x, y)[c] = static_cast<float>(value * (1 + noise * (random - 0.5)));
             }
     return image;
+}
+
+// One of tests/data/reference.
+inline RgbImage recordedPicture(const std::string& name) {
+    return readExr(std::string(LSDE_TEST_DATA) + "/reference/" + name + ".exr").layer("");
 }
 
 }  // namespace lsde

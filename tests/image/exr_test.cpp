@@ -55,7 +55,7 @@ bool sameBits(const std::vector<float>& a, const std::vector<float>& b) {
 
 double sum(const std::vector<float>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
-std::string refusal(const fs::path& path, int64_t maxPixels = int64_t{1} << 28) {
+std::string exrRefusal(const fs::path& path, int64_t maxPixels = int64_t{1} << 28) {
     const std::string message = errorOf([&] { readExr(path, maxPixels); });
     CHECK_MESSAGE(message.find('\n') == std::string::npos, message);
     return message.starts_with(path.string() + ": ") ? message.substr(path.string().size() + 2)
@@ -200,12 +200,12 @@ TEST_CASE("a picture whose windows agree may begin anywhere") {
 TEST_CASE("what is no EXR is refused by name") {
     const TemporaryFolder folder;
     const fs::path path = folder / "file.exr";
-    CHECK(refusal(path) == "cannot be opened: No such file or directory");
-    CHECK(refusal(folder.path()) == "is a folder, expected a file");
+    CHECK(exrRefusal(path) == "cannot be opened: No such file or directory");
+    CHECK(exrRefusal(folder.path()) == "is a folder, expected a file");
     test::put(path, "");
-    CHECK(refusal(path) == "is not an OpenEXR file: 0 bytes");
+    CHECK(exrRefusal(path) == "is not an OpenEXR file: 0 bytes");
     test::put(path, "{\"asset\": {}}");
-    CHECK(refusal(path) == "is not an OpenEXR file");
+    CHECK(exrRefusal(path) == "is not an OpenEXR file");
 }
 
 TEST_CASE("kinds of EXR that are not taken are refused by what they are") {
@@ -216,25 +216,25 @@ TEST_CASE("kinds of EXR that are not taken are refused by what they are") {
         h.displayWindow() = Imath::Box2i({0, 0}, {9, 4});
         Imf::OutputFile file(path.c_str(), h);
     }
-    CHECK(refusal(path) == "data window 0 0 3 3, expected the display window, 0 0 9 4");
+    CHECK(exrRefusal(path) == "data window 0 0 3 3, expected the display window, 0 0 9 4");
     {
         Imf::Header h = header(4, 4);
         h.channels().insert("BY", Imf::Channel(Imf::HALF, 2, 2));
         Imf::OutputFile file(path.c_str(), h);
     }
-    CHECK(refusal(path) == "channel \"BY\" is sub-sampled 2x2, expected 1x1");
+    CHECK(exrRefusal(path) == "channel \"BY\" is sub-sampled 2x2, expected 1x1");
     {
         Imf::Header h = header(4, 4);
         h.setType(Imf::DEEPSCANLINE);
         h.compression() = Imf::ZIPS_COMPRESSION;
         Imf::DeepScanLineOutputFile file(path.c_str(), h);
     }
-    CHECK(refusal(path) == "is a deep OpenEXR file, expected flat pixels");
+    CHECK(exrRefusal(path) == "is a deep OpenEXR file, expected flat pixels");
     for (const Imf::Compression lossy : {Imf::DWAA_COMPRESSION, Imf::DWAB_COMPRESSION}) {
         Imf::Header h = header(4, 4);
         h.compression() = lossy;
         { Imf::OutputFile file(path.c_str(), h); }
-        CHECK(refusal(path) == "is compressed by DWA, which is lossy, expected any other compression");
+        CHECK(exrRefusal(path) == "is compressed by DWA, which is lossy, expected any other compression");
     }
     {
         std::vector<Imf::Header> headers(2, header(4, 4));
@@ -243,16 +243,16 @@ TEST_CASE("kinds of EXR that are not taken are refused by what they are") {
         for (Imf::Header& h : headers) h.setType(Imf::SCANLINEIMAGE);
         Imf::MultiPartOutputFile file(path.c_str(), headers.data(), 2);
     }
-    CHECK(refusal(path) == "is a multi-part OpenEXR file, expected a single part");
+    CHECK(exrRefusal(path) == "is a multi-part OpenEXR file, expected a single part");
     { Imf::OutputFile file(path.c_str(), header(4, 4)); }
-    CHECK(refusal(path) == "truncated: parts of the picture are missing");
+    CHECK(exrRefusal(path) == "truncated: parts of the picture are missing");
 }
 
 TEST_CASE("sizes are checked before memory is taken") {
     const TemporaryFolder folder;
     const fs::path path = folder / "file.exr";
     writeForeign<float>(path, Imf::FLOAT, 20, 10, false);
-    CHECK(refusal(path, 199) == "20x10 pixels, expected at most 199");
+    CHECK(exrRefusal(path, 199) == "20x10 pixels, expected at most 199");
     CHECK(readExr(path, 200).width == 20);
 
     // The file with words put in after a text of its header.
@@ -268,14 +268,14 @@ TEST_CASE("sizes are checked before memory is taken") {
     std::string forged = sound;
     forge(forged, "compression\0compression\0"s, {0x7fffffff});
     test::put(path, forged);
-    CHECK(refusal(path).starts_with("attribute \"compression\": 2147483647 bytes, but the file ends after "));
+    CHECK(exrRefusal(path).starts_with("attribute \"compression\": 2147483647 bytes, but the file ends after "));
 
     const auto withWindows = [&](uint32_t maxX, uint32_t maxY) {
         forged = sound;
         for (const std::string& window : {"dataWindow\0box2i\0"s, "displayWindow\0box2i\0"s})
             forge(forged, window, {16, 0, 0, maxX, maxY});
         test::put(path, forged);
-        return refusal(path);
+        return exrRefusal(path);
     };
     CHECK(withWindows(0x7ffffffe, 0x7ffffffe) == "2147483647x2147483647 pixels, expected at most 268435456");
     CHECK(withWindows(16383, 16383) ==
@@ -289,7 +289,7 @@ TEST_CASE("a truncated EXR is refused at any length") {
     const std::string sound = contentOf(folder / "sound.exr");
     for (size_t bytes = 0; bytes < sound.size(); bytes += 61) {
         test::put(folder / "file.exr", sound.substr(0, bytes));
-        CHECK_MESSAGE(!refusal(folder / "file.exr").starts_with("(no path)"), bytes, " bytes");
+        CHECK_MESSAGE(!exrRefusal(folder / "file.exr").starts_with("(no path)"), bytes, " bytes");
     }
 }
 
@@ -298,7 +298,7 @@ TEST_CASE("damaged files end in an error, not in a crash") {
         const std::string name = entry.path().filename();
         CAPTURE(name);
         if (name.starts_with("comp_"))
-            CHECK_FALSE(refusal(entry.path()).starts_with("(no path)"));
+            CHECK_FALSE(exrRefusal(entry.path()).starts_with("(no path)"));
         else  // the picture is sound, only its attribute "type" is wrong
             CHECK(readExr(entry.path()).width == 40);
     }

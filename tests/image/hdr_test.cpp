@@ -36,7 +36,7 @@ class Written {
 
 RgbImage readBack(const std::string& content) { return readHdr(Written(content).file()); }
 
-std::string refusal(const std::string& content, int64_t maxPixels = 1 << 20) {
+std::string hdrRefusal(const std::string& content, int64_t maxPixels = 1 << 20) {
     const Written written(content);
     try {
         readHdr(written.file(), maxPixels);
@@ -84,26 +84,26 @@ TEST_CASE("the exposure is divided out") {
 }
 
 TEST_CASE("what is no Radiance picture, or a damaged one, is refused and says why") {
-    CHECK(refusal("") == "not a Radiance picture: expected \"#?\" at its beginning");
-    CHECK(refusal("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n") == "the header is cut short");
-    CHECK(refusal("#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\nabcd") ==
+    CHECK(hdrRefusal("") == "not a Radiance picture: expected \"#?\" at its beginning");
+    CHECK(hdrRefusal("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n") == "the header is cut short");
+    CHECK(hdrRefusal("#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\nabcd") ==
           "FORMAT=32-bit_rle_xyze, expected FORMAT=32-bit_rle_rgbe");
-    CHECK(refusal("#?RADIANCE\n\n-Y 1 +X 1\nabcd") == "no FORMAT line, expected FORMAT=32-bit_rle_rgbe");
-    CHECK(refusal(kHeader + "+Y 1 +X 1\nabcd") == "resolution \"+Y 1 +X 1\", expected -Y HEIGHT +X WIDTH");
-    CHECK(refusal(kHeader + "-Y 0 +X 1\nabcd") == "resolution \"-Y 0 +X 1\", expected -Y HEIGHT +X WIDTH");
-    CHECK(refusal(sized(2000, 2000) + "abcd") == "2000x2000 pixels, expected at most 1048576");
-    CHECK(refusal(sized(1000, 1000) + "abcd") == "row 0 is cut short");
-    CHECK(refusal(sized(2, 2) + bytes({1, 2, 3, 4, 1, 2, 3, 4, 1, 2, 3, 4})) == "row 1 is cut short");
-    CHECK(refusal(sized(8, 1) + bytes({2, 2, 0, 9, 137, 1})) == "row 0 holds 9 pixels, expected 8");
-    CHECK(refusal(sized(8, 1) + bytes({2, 2, 0, 8, 137, 1})) == "row 0: a run of 9 pixels at 0, expected 1 to 8");
-    CHECK(refusal(sized(8, 1) + bytes({2, 2, 0, 8, 0, 1})) == "row 0: a run of 0 pixels at 0, expected 1 to 8");
-    CHECK(refusal(sized(2, 1) + bytes({1, 1, 1, 1, 9, 9, 9, 9})) == "row 0: repeats 1 pixels at 0 of 2");
-    CHECK(refusal("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=0\n\n") == "EXPOSURE=0, expected a number > 0");
+    CHECK(hdrRefusal("#?RADIANCE\n\n-Y 1 +X 1\nabcd") == "no FORMAT line, expected FORMAT=32-bit_rle_rgbe");
+    CHECK(hdrRefusal(kHeader + "+Y 1 +X 1\nabcd") == "resolution \"+Y 1 +X 1\", expected -Y HEIGHT +X WIDTH");
+    CHECK(hdrRefusal(kHeader + "-Y 0 +X 1\nabcd") == "resolution \"-Y 0 +X 1\", expected -Y HEIGHT +X WIDTH");
+    CHECK(hdrRefusal(sized(2000, 2000) + "abcd") == "2000x2000 pixels, expected at most 1048576");
+    CHECK(hdrRefusal(sized(1000, 1000) + "abcd") == "row 0 is cut short");
+    CHECK(hdrRefusal(sized(2, 2) + bytes({1, 2, 3, 4, 1, 2, 3, 4, 1, 2, 3, 4})) == "row 1 is cut short");
+    CHECK(hdrRefusal(sized(8, 1) + bytes({2, 2, 0, 9, 137, 1})) == "row 0 holds 9 pixels, expected 8");
+    CHECK(hdrRefusal(sized(8, 1) + bytes({2, 2, 0, 8, 137, 1})) == "row 0: a run of 9 pixels at 0, expected 1 to 8");
+    CHECK(hdrRefusal(sized(8, 1) + bytes({2, 2, 0, 8, 0, 1})) == "row 0: a run of 0 pixels at 0, expected 1 to 8");
+    CHECK(hdrRefusal(sized(2, 1) + bytes({1, 1, 1, 1, 9, 9, 9, 9})) == "row 0: repeats 1 pixels at 0 of 2");
+    CHECK(hdrRefusal("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=0\n\n") == "EXPOSURE=0, expected a number > 0");
 }
 
 TEST_CASE("no damage to a Radiance picture does worse than a refusal") {
     const std::string sound = sized(8, 4) + packedRow() + packedRow() + packedRow() + packedRow();
-    REQUIRE(refusal(sound) == "accepted");
+    REQUIRE(hdrRefusal(sound) == "accepted");
     std::mt19937 random(3);
     const Written written(sound);
     for (int i = 0; i < 500; ++i) {

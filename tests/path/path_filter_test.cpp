@@ -24,7 +24,7 @@ EyePathState eyeOf(const PathFilter& filter, std::string_view suffix) {
     return eye;
 }
 
-PathCode codeOf(std::string_view word) {
+PathCode codeOfWord(std::string_view word) {
     PathCode code;
     for (const char letter : word) code.append(eventOf(letter));
     return code;
@@ -47,7 +47,7 @@ TEST_CASE("every layer of a filter takes the paths of its own expression, wherev
         for (size_t split = 0; split <= word.size(); ++split) {
             CAPTURE(word);
             CAPTURE(split);
-            const LightPathState light = filter.stateOf(codeOf(word.substr(0, split)));
+            const LightPathState light = filter.stateOf(codeOfWord(word.substr(0, split)));
             REQUIRE(filter.accepted(light, eyeOf(filter, word.substr(split))) == expected);
         }
     }
@@ -60,14 +60,14 @@ TEST_CASE("layers whose expressions part all paths take each path exactly once")
         const PathFilter filter = makeFilter(parts);
         for (const std::string& word : allWords(8)) {
             CAPTURE(word);
-            REQUIRE(std::popcount(filter.accepted(filter.stateOf(codeOf(word)), filter.eye())) == 1);
+            REQUIRE(std::popcount(filter.accepted(filter.stateOf(codeOfWord(word)), filter.eye())) == 1);
         }
     }
 }
 
 TEST_CASE("a layer stays alive as long as a path can still become one of its own") {
     const PathFilter filter = makeFilter({"LS+DE", "L.*E", "LDE"});
-    const auto light = [&](std::string_view prefix) { return filter.alive(filter.stateOf(codeOf(prefix))); };
+    const auto light = [&](std::string_view prefix) { return filter.alive(filter.stateOf(codeOfWord(prefix))); };
     const auto eye = [&](std::string_view suffix) { return filter.alive(eyeOf(filter, suffix)); };
     CHECK(light("") == 0b111);
     CHECK(light("S") == 0b011);
@@ -96,7 +96,7 @@ TEST_CASE("a filter without layers takes nothing and fails nowhere") {
 TEST_CASE("a filter has at most 16 layers, each of its own name") {
     const std::vector<std::string> most(kMaxPathLayers, "LS+DE");
     const PathFilter filter = makeFilter(most);
-    CHECK(filter.accepted(filter.stateOf(codeOf("SSD")), filter.eye()) == 0xffff);
+    CHECK(filter.accepted(filter.stateOf(codeOfWord("SSD")), filter.eye()) == 0xffff);
     CHECK_THROWS_WITH_AS(makeFilter(std::vector<std::string>(kMaxPathLayers + 1, "LE")),
                          "17 path layers, expected at most 16", Error);
     CHECK_THROWS_WITH_AS(PathFilter({{"a", PathExpr("LE")}, {"b", PathExpr("LE")}, {"a", PathExpr("LDE")}}),

@@ -6,12 +6,11 @@
 #include "support/statistics.h"
 
 using namespace lsde;
+using test::kSquareRule;
 using test::Random;
 using test::Square;
 
 namespace {
-
-constexpr BandwidthRule kRule{20, 1000, 2.5F};
 
 Vec3 positionOf(const Square& square, uint32_t photon) { return view(square.tree).position(photon); }
 
@@ -26,7 +25,7 @@ TEST_CASE("where light is even the bandwidth grows as far as it may") {
         const auto photon = static_cast<uint32_t>(random.uniform() * static_cast<float>(square.tree.count));
         const Vec3 p = positionOf(square, photon);
         if (std::max(std::fabs(p.x), std::fabs(p.y)) > 0.8F) continue;
-        const Bandwidth b = consistentBandwidth(square.source(), photon, kRule, scratch);
+        const Bandwidth b = consistentBandwidth(square.source(), photon, kSquareRule, scratch);
         CHECK(b.count <= 1200);
         CHECK(b.count == doctest::Approx(20'000 * b.area()).epsilon(0.5));
         wide += b.count >= 450 ? 1 : 0;
@@ -42,7 +41,7 @@ TEST_CASE("a bandwidth ends at an edge, on its dark side as well") {
     for (uint32_t i = 0; i < square.tree.count; ++i) {
         const Vec3 p = positionOf(square, i);
         if (p.x > 0 || p.x < -0.2F || std::fabs(p.y) > 0.7F) continue;
-        const Bandwidth b = consistentBandwidth(square.source(), i, kRule, scratch);
+        const Bandwidth b = consistentBandwidth(square.source(), i, kSquareRule, scratch);
         beyond += std::max(0.0F, b.radius + p.x);
         ++dark;
     }
@@ -59,7 +58,7 @@ TEST_CASE("no bandwidth on the dark side reaches far beyond an edge") {
         for (uint32_t i = 0; i < square.tree.count; ++i) {
             const Vec3 p = positionOf(square, i);
             if (p.x > 0 || p.x < -0.2F || std::fabs(p.y) > 0.7F) continue;
-            most = std::max(most, consistentBandwidth(square.source(), i, kRule, scratch).radius + p.x);
+            most = std::max(most, consistentBandwidth(square.source(), i, kSquareRule, scratch).radius + p.x);
         }
     }
     MESSAGE("beyond the edge at most: ", most, " m");
@@ -74,7 +73,7 @@ TEST_CASE("photons of no group do not count") {
     for (uint32_t i = 0; i < square.tree.count; i += 400) {
         const Vec3 p = positionOf(square, i);
         if (std::max(std::fabs(p.x), std::fabs(p.y)) > 0.8F) continue;
-        const Bandwidth b = consistentBandwidth(square.source(1), i, kRule, scratch);
+        const Bandwidth b = consistentBandwidth(square.source(1), i, kSquareRule, scratch);
         if (b.count < 200) continue;
         CHECK(b.count == doctest::Approx(10'000 * b.area()).epsilon(0.35));
         ++wide;
@@ -94,7 +93,7 @@ TEST_CASE("a bandwidth ends where the power of the photons changes and not their
         // Far enough for a least disc to be dark; the largest, of 1000 photons, would reach 12 cm.
         if (p.x > -0.03F || p.x < -0.06F || std::fabs(p.y) > 0.7F) continue;
         ++there;
-        reaching += consistentBandwidth(square.source(), i, kRule, scratch).radius + p.x > 0.02F ? 1 : 0;
+        reaching += consistentBandwidth(square.source(), i, kSquareRule, scratch).radius + p.x > 0.02F ? 1 : 0;
     }
     REQUIRE(there > 50);
     CHECK(reaching / there < 0.05);
@@ -107,8 +106,8 @@ TEST_CASE("a bandwidth does not depend on what its memory was used for before") 
     for (int i = 0; i < 1000; ++i) {
         const uint32_t photon = random.bits() % static_cast<uint32_t>(square.tree.count);
         BandwidthScratch fresh;
-        const Bandwidth a = consistentBandwidth(square.source(), photon, kRule, used);
-        const Bandwidth b = consistentBandwidth(square.source(), photon, kRule, fresh);
+        const Bandwidth a = consistentBandwidth(square.source(), photon, kSquareRule, used);
+        const Bandwidth b = consistentBandwidth(square.source(), photon, kSquareRule, fresh);
         REQUIRE(a.radius == b.radius);
         REQUIRE(a.count == b.count);
     }
@@ -119,7 +118,7 @@ TEST_CASE("where there are fewer photons than the least disc holds the bandwidth
     REQUIRE(square.tree.count > 5);
     BandwidthScratch scratch;
     for (uint32_t i = 0; i < square.tree.count; ++i)
-        CHECK(consistentBandwidth(square.source(), i, kRule, scratch).radius == 0.5F);
+        CHECK(consistentBandwidth(square.source(), i, kSquareRule, scratch).radius == 0.5F);
 }
 
 TEST_CASE("a bandwidth ends where the colour of dispersed light changes, though its brightness does not") {
@@ -142,7 +141,7 @@ TEST_CASE("a bandwidth ends where the colour of dispersed light changes, though 
             PhotonSource source = square.source();
             source.dispersed = dispersed;
             beyond[dispersed ? 1 : 0] =
-                std::max(beyond[dispersed ? 1 : 0], consistentBandwidth(source, i, kRule, scratch).radius + p.x);
+                std::max(beyond[dispersed ? 1 : 0], consistentBandwidth(source, i, kSquareRule, scratch).radius + p.x);
         }
     MESSAGE("beyond the edge at most: ", beyond[0], " and ", beyond[1], " m");
     CHECK(beyond[0] > 0.05F);

@@ -6,13 +6,12 @@
 #include "support/statistics.h"
 
 using namespace lsde;
+using test::kSquareRule;
 using test::photonAt;
 using test::Random;
 using test::Square;
 
 namespace {
-
-constexpr BandwidthRule kRule{20, 1000, 2.5F};
 
 // Half of the ellipse's extent along x.
 float extentAlongX(const Bandwidth& b) {
@@ -33,7 +32,7 @@ TEST_CASE("discs that end at an edge grow on along it, and do not turn across it
             const Vec3 p = view(square.tree).position(i);
             if (p.x > 0 || p.x < -0.08F || std::fabs(p.y) > 0.6F) continue;
             ++all;
-            const Bandwidth b = consistentBandwidth(square.source(), i, kRule, scratch);
+            const Bandwidth b = consistentBandwidth(square.source(), i, kSquareRule, scratch);
             if (b.radius > 2 * -p.x || b.radius > 0.1F) continue;
             ++ended;
             stretch.add(static_cast<double>(b.stretch()));
@@ -71,7 +70,7 @@ TEST_CASE("an ellipse ends where the edge bends away from it") {
         for (uint32_t i = 0; i < tree.count; ++i) {
             const Vec3 p = view(tree).position(i);
             if (glm::length(p) < 0.14F || glm::length(p) > 0.25F) continue;
-            const Bandwidth b = consistentBandwidth(source, i, kRule, scratch);
+            const Bandwidth b = consistentBandwidth(source, i, kSquareRule, scratch);
             int within = 0, bright = 0;
             for (uint32_t k = 0; k < tree.count; ++k) {
                 const Vec3 q = view(tree).position(k);

@@ -6,14 +6,15 @@
 #include "support/statistics.h"
 
 using namespace lsde;
+using test::kSquareRule;
 using test::queryFrom;
 using test::Random;
 using test::Square;
 
 namespace {
 
-constexpr IrradianceRule kRule{{20, 1000, 2.5F}, 50};
-constexpr IrradianceRule kManyPhotons{{20, 1000, 2.5F}, 400};
+constexpr IrradianceRule kIrradianceRule{kSquareRule, 50};
+constexpr IrradianceRule kManyPhotons{kSquareRule, 400};
 constexpr IrradianceRule kFewPhotons{{20, 100, 2.5F}, 20};
 
 }  // namespace
@@ -46,7 +47,7 @@ TEST_CASE("cached irradiance has no bias where light is even, and keeps groups a
 
 TEST_CASE("the cache answers for its own side, medium and direction only") {
     const Square square(5, 5000, 1);
-    IrradianceCache cache(square.source(), kRule);
+    IrradianceCache cache(square.source(), kIrradianceRule);
     BandwidthScratch scratch;
     const auto known = [&](const DensityQuery& query) { return !cache.at(query, true, scratch).irradiance.empty(); };
     const DensityQuery query = queryFrom({0.1F, 0.1F, 0});
@@ -151,7 +152,7 @@ TEST_CASE("a bent shading normal sees as much more of slanting light as it leans
     const Vec3 from(std::sqrt(0.75F), 0, 0.5F);
     for (PhotonPayload& p : square.tree.payload) p.direction = packDirection(from);
     const PhotonSource source = square.source();
-    IrradianceCache cache(source, kRule);
+    IrradianceCache cache(source, kIrradianceRule);
     BandwidthScratch scratch;
     int known = 0;
     for (const float lean : {-0.05F, 0.0F, 0.05F})
@@ -171,7 +172,7 @@ TEST_CASE("where light is even almost every point has an answer") {
     int known = 0, all = 0;
     for (uint32_t seed = 1; seed <= 20; ++seed) {
         const Square square(200 + seed, 5000, 1);
-        IrradianceCache cache(square.source(), kRule);
+        IrradianceCache cache(square.source(), kIrradianceRule);
         BandwidthScratch scratch;
         Random random(seed);
         for (int i = 0; i < 1000; ++i) {
@@ -190,7 +191,7 @@ TEST_CASE("light on the back of a sheet takes hardly any answers away, and chang
     test::Mean ratio;
     for (uint32_t seed = 1; seed <= 20; ++seed) {
         const Square square(300 + seed, 5000, 1, 5000);
-        IrradianceCache cache(square.source(), kRule);
+        IrradianceCache cache(square.source(), kIrradianceRule);
         BandwidthScratch scratch;
         Random random(seed);
         test::Mean here;
@@ -215,7 +216,7 @@ TEST_CASE("beside an edge the cached irradiance is that of its own side" * docte
     test::Mean dark, bright;
     for (uint32_t seed = 1; seed <= 8; ++seed) {
         const Square square(seed, 2000, 50);
-        IrradianceCache cache(square.source(), kRule);
+        IrradianceCache cache(square.source(), kIrradianceRule);
         BandwidthScratch scratch;
         Random random(seed);
         for (int i = 0; i < 4000; ++i) {
@@ -237,7 +238,7 @@ TEST_CASE("beside an edge the cached irradiance is that of its own side" * docte
 
 TEST_CASE("a group's irradiance is its own photons', and those of no group leave nothing") {
     const Square square(13, 5000, 1);
-    IrradianceCache both(square.source(2), kRule), one(square.source(1), kRule);
+    IrradianceCache both(square.source(2), kIrradianceRule), one(square.source(1), kIrradianceRule);
     BandwidthScratch scratch;
     Random random(14);
     test::Mean first, alone;
@@ -257,7 +258,7 @@ TEST_CASE("a group's irradiance is its own photons', and those of no group leave
 
 TEST_CASE("normals as far apart as a cosine of 0.95 share their irradiance, others do not") {
     const Square square(15, 5000, 1);
-    IrradianceCache cache(square.source(), kRule);
+    IrradianceCache cache(square.source(), kIrradianceRule);
     BandwidthScratch scratch;
     for (const float cosine : {0.96F, 0.94F}) {
         DensityQuery query = queryFrom({0.1F, 0.1F, 0});

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "base/hash.h"
 #include "photon/density.h"
 #include "photon/map_header.h"
 #include "photon/photons.h"

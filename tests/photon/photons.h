@@ -1,32 +1,12 @@
 // Photons for tests.
 #pragma once
 
-#include <cmath>
-#include <functional>
-#include <random>
 #include <vector>
 
-#include "base/hash.h"
 #include "photon/kd_index.h"
+#include "support/random.h"
 
 namespace lsde::test {
-
-class Random {
-  public:
-    explicit Random(uint32_t seed) : engine_(seed) {}
-    uint32_t bits() { return engine_(); }
-    float uniform() { return toUnitFloat(engine_()); }
-    float between(float lo, float hi) { return lo + (hi - lo) * uniform(); }
-    Vec3 inCube() { return {uniform(), uniform(), uniform()}; }
-    Vec3 onSphere() {
-        const float z = between(-1, 1), angle = between(0, 2 * kPi), r = std::sqrt(std::max(0.0F, 1 - z * z));
-        return {r * std::cos(angle), r * std::sin(angle), z};
-    }
-    uint32_t poisson(double mean) { return std::poisson_distribution<uint32_t>(mean)(engine_); }
-
-  private:
-    std::mt19937 engine_;
-};
 
 // On the plane z = 0, lit from above.
 inline Photon photonAt(Vec3 position, uint64_t key = 0) {

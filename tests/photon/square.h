@@ -8,6 +8,8 @@
 
 namespace lsde::test {
 
+inline constexpr BandwidthRule kSquareRule{20, 1000, 2.5F};  // bandwidths on squares like the one below
+
 // Photons of even power on the square [-1, 1]^2 of the plane z = 0, `density` of them a m2 where x < 0 and as many
 // times `contrast` where x > 0; every other one in group 1.
 struct Square {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/hash.h"
 #include "photon/irradiance_cache.h"
 #include "photon/square.h"
 

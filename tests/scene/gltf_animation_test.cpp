@@ -3,6 +3,7 @@
 
 #include "scene/gltf_file.h"
 #include "scene/scene.h"
+#include "support/near.h"
 
 using namespace lsde;
 using namespace lsde::test;
@@ -31,8 +32,6 @@ Vec3 cornerAt(const GltfFile& file, std::optional<double> seconds) {
     options.atSeconds = seconds;
     return load(file, options).meshes.at(0).positions.at(1);
 }
-
-void checkNear(Vec3 a, Vec3 b) { CHECK_MESSAGE(glm::length(a - b) < 1e-5F, a.x << ' ' << a.y << ' ' << a.z); }
 
 }  // namespace
 

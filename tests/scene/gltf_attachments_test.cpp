@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include "scene/gltf_file.h"
+#include "support/near.h"
 
 using namespace lsde;
 using namespace lsde::test;
@@ -28,10 +29,6 @@ GltfFile cameraFile(const Json& camera, const Json& node = Json::object()) {
 
 const Json kPerspective = {{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}}};
 
-void checkNear(Vec3 a, Vec3 b) { CHECK_MESSAGE(glm::length(a - b) < 1e-6F, a.x << ' ' << a.y << ' ' << a.z); }
-
-const double kHalf = std::sqrt(0.5);
-
 }  // namespace
 
 TEST_CASE("lights are placed by their nodes, whose scale changes neither direction nor power") {
@@ -43,7 +40,8 @@ TEST_CASE("lights are placed by their nodes, whose scale changes neither directi
     for (const double scale : {1.0, 5.0, -3.0}) {
         // Turned by 90 degrees about x: -Z becomes +Y... and then about y by its parent: still up.
         GltfFile file = lightFile(
-            spot, {{"translation", {1, 2, 3}}, {"rotation", {kHalf, 0, 0, kHalf}}, {"scale", {scale, scale, scale}}});
+            spot,
+            {{"translation", {1, 2, 3}}, {"rotation", {kRootHalf, 0, 0, kRootHalf}}, {"scale", {scale, scale, scale}}});
         const SceneDescription scene = load(file);
         REQUIRE(scene.lights.size() == 1);
         const PunctualLight& l = scene.lights[0];
@@ -57,7 +55,7 @@ TEST_CASE("lights are placed by their nodes, whose scale changes neither directi
     }
     GltfFile nested = lightFile({{"type", "directional"}}, {{"translation", {1, 0, 0}}, {"name", "sun"}});
     nested["/scenes/0/nodes"] = {0, 2};
-    nested.add("nodes", {{"children", {1}}, {"rotation", {0, kHalf, 0, kHalf}}, {"scale", {2, 2, 2}}});
+    nested.add("nodes", {{"children", {1}}, {"rotation", {0, kRootHalf, 0, kRootHalf}}, {"scale", {2, 2, 2}}});
     const PunctualLight sun = load(nested).lights.at(0);
     CHECK(sun.name == "sun");
     checkNear(sun.position, {0, 0, -2});
@@ -90,7 +88,7 @@ TEST_CASE("lights with impossible values are refused") {
 TEST_CASE("cameras look down their node's -Z, orthonormal whatever the scales above") {
     const CameraDescription c = load(cameraFile(kPerspective, {{"name", "eye"},
                                                                {"translation", {1, 2, 3}},
-                                                               {"rotation", {0, kHalf, 0, kHalf}},
+                                                               {"rotation", {0, kRootHalf, 0, kRootHalf}},
                                                                {"scale", {2, -3, 4}}}))
                                     .cameras.at(0);
     CHECK(c.name == "eye");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <initializer_list>
@@ -15,6 +16,8 @@
 namespace lsde::test {
 
 using Json = nlohmann::json;
+
+inline const double kRootHalf = std::sqrt(0.5);  // of quaternions: a quarter turn
 
 template <typename T>
 constexpr int componentTypeOf() {

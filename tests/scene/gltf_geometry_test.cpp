@@ -5,15 +5,12 @@
 #include <numeric>
 
 #include "scene/gltf_file.h"
+#include "support/near.h"
 
 using namespace lsde;
 using namespace lsde::test;
 
 namespace {
-
-const double kHalf = std::sqrt(0.5);
-
-void checkNear(Vec3 a, Vec3 b) { CHECK_MESSAGE(glm::length(a - b) < 1e-5F, a.x << ' ' << a.y << ' ' << a.z); }
 
 Vec3 faceNormal(const Mesh& m, size_t triangle) {
     const Triangle& t = m.triangles[triangle];
@@ -189,13 +186,13 @@ TEST_CASE("nested rotation, mirroring and uneven scale place points by the produ
     // Parent: turned by 90 degrees about z and scaled unevenly. Child: turned by 45 degrees about x, mirrored, moved.
     GltfFile file = withNormals({0.6F, 0, 0.8F, 0, 0, 1, 0, 0, 1});
     file["/nodes/0"] = {{"mesh", 0},
-                        {"rotation", {std::sin(kHalf), 0, 0, std::cos(kHalf)}},
+                        {"rotation", {std::sin(kRootHalf), 0, 0, std::cos(kRootHalf)}},
                         {"scale", {1, 1, -3}},
                         {"translation", {1, 2, 3}}};
-    file.add("nodes", {{"children", {0}}, {"rotation", {0, 0, kHalf, kHalf}}, {"scale", {2, 0.5, 1}}});
+    file.add("nodes", {{"children", {0}}, {"rotation", {0, 0, kRootHalf, kRootHalf}}, {"scale", {2, 0.5, 1}}});
     file["/scenes/0/nodes"] = {1};
     const Mesh m = load(file).meshes.at(0);
-    const double angle = 2 * kHalf, c = std::cos(angle), s = std::sin(angle);
+    const double angle = 2 * kRootHalf, c = std::cos(angle), s = std::sin(angle);
     const auto place = [&](glm::dvec3 p) {
         p.z *= -3;
         p = glm::dvec3(p.x, c * p.y - s * p.z, s * p.y + c * p.z) + glm::dvec3(1, 2, 3);
@@ -217,7 +214,7 @@ TEST_CASE("nested rotation, mirroring and uneven scale place points by the produ
 TEST_CASE("a matrix places as the same translation, rotation and scale do") {
     GltfFile parts = withNormals(), matrix = withNormals();
     parts["/nodes/0"] = {
-        {"mesh", 0}, {"rotation", {0, 0, kHalf, kHalf}}, {"scale", {2, 3, 4}}, {"translation", {5, 6, 7}}};
+        {"mesh", 0}, {"rotation", {0, 0, kRootHalf, kRootHalf}}, {"scale", {2, 3, 4}}, {"translation", {5, 6, 7}}};
     matrix["/nodes/0/matrix"] = {0, 2, 0, 0, -3, 0, 0, 0, 0, 0, 4, 0, 5, 6, 7, 1};
     const Mesh a = load(parts).meshes.at(0), b = load(matrix).meshes.at(0);
     for (size_t i = 0; i < 3; ++i) checkNear(a.positions[i], b.positions[i]);

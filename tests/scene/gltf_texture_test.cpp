@@ -3,6 +3,7 @@
 
 #include "image/png.h"
 #include "scene/gltf_file.h"
+#include "support/near.h"
 
 using namespace lsde;
 using namespace lsde::test;
@@ -19,8 +20,6 @@ GltfFile texturedFile(const std::string& picture, const Json& use = {{"index", 0
     file.add("images", {{"mimeType", "image/png"}, {"bufferView", file.view(picture)}});
     return file;
 }
-
-void checkNear(Vec3 a, Vec3 b) { CHECK_MESSAGE(glm::length(a - b) < 1e-6F, a.x << ' ' << a.y << ' ' << a.z); }
 
 }  // namespace
 

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "scene/gltf_file.h"
+#include "support/near.h"
 #include "support/scenes.h"
 
 using namespace lsde;
@@ -11,8 +12,6 @@ using namespace lsde::test;
 using doctest::Approx;
 
 namespace {
-
-void checkNear(Vec3 a, Vec3 b) { CHECK(glm::length(a - b) < 1e-5F); }
 
 Texture oneTexel(uint8_t x, uint8_t y, uint8_t z) {
     Texture t;

@@ -37,7 +37,7 @@ Vertex floorAt(Vec3 position, bool fromBelow) {
 }
 
 constexpr DiffuseBsdf kGrey{Rgb(0.5F)};
-constexpr int kTests = 4;
+constexpr int kAimTests = 4;
 constexpr float kBoost = 4;
 
 bool sampleOnce(const DiffuseAim& aim, const Vertex& v, Sampler sampler, DiffuseAim::Direction& direction) {
@@ -65,7 +65,7 @@ TEST_CASE("directions aimed from a diffuse surface have the density of the mixtu
                 [&](Vec3 direction) -> double {
                     return direction.y * v.woWorld.y > 0 ? aim.at(v, kGrey).pdf(direction) : 0;
                 });
-            CHECK(result.accepted(kTests));
+            CHECK(result.accepted(kAimTests));
         }
 }
 

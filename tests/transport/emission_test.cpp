@@ -82,7 +82,7 @@ Drawn draw(const EmissionSampler& sources, uint64_t index, uint64_t seed = 1) {
 // Each from a sequence of its own: chi-squared tests expect independent samples.
 Drawn drawIndependently(const EmissionSampler& sources, uint64_t i) { return draw(sources, 0, i); }
 
-constexpr int kTests = 30;  // chi-squared tests in this file
+constexpr int kEmissionTests = 30;  // chi-squared tests in this file
 
 // What it learns here has no sense, so that nothing but its use is tested: that paths to one side are worth much.
 EmissionSampler learntSampler(const Scene& scene, AimShares shares = kAimedAtCasters) {
@@ -119,7 +119,7 @@ void checkDirections(Kind kind, bool contained, bool learnt = false) {
             const auto d = sources.directionDensities(0, kLight, {0, up ? 1 : -1, 0}, direction);
             return d.whole > 0 ? share * d.mixture : 0;
         });
-    CHECK(result.accepted(kTests));
+    CHECK(result.accepted(kEmissionTests));
 }
 
 }  // namespace
@@ -170,7 +170,7 @@ void checkDiscs(Kind kind, bool learnt) {
             const auto d = sources.discDensities(0, p, frame.z);
             return d.whole > 0 ? d.mixture * side * side : 0;
         });
-    CHECK(result.accepted(kTests));
+    CHECK(result.accepted(kEmissionTests));
 }
 
 }  // namespace
@@ -198,7 +198,7 @@ TEST_CASE("rays of an environment come from each direction by its density, where
             return d.emits ? std::optional(-d.start.ray.direction) : std::nullopt;
         },
         [&](Vec3 towards) { return light.pdfW(towards); });
-    CHECK(result.accepted(kTests));
+    CHECK(result.accepted(kEmissionTests));
 }
 
 TEST_CASE("an even environment's rays go through a small sphere as pi times its cross-section says") {
