@@ -6,6 +6,20 @@
 using namespace lsde;
 using namespace lsde::test;
 
+namespace {
+
+// One seed's random numbers meet the same surfaces at the same places, but for rounding.
+void checkSamePaths(const std::string& a, const std::string& b) {
+    const Estimate ofA = estimate(a, settingsFor("path", 32, 64), 2, 8);
+    const Estimate ofB = estimate(b, settingsFor("path", 32, 64), 2, 8);
+    for (size_t i = 0; i < ofA.mean.size(); ++i) {
+        CAPTURE(i);
+        CHECK(ofA.mean[i] == doctest::Approx(ofB.mean[i]).epsilon(0.01));
+    }
+}
+
+}  // namespace
+
 TEST_CASE("a lamp behind a pane, with and without a glass ball: photons agree with path tracing") {
     for (const char* scene : {"pane", "pane-ball"}) {
         CAPTURE(scene);
@@ -40,18 +54,14 @@ TEST_CASE(
     const Estimate overlap = estimate("water-glass-overlap", settingsFor("photon", 32, 64), 6, 4);
     const Estimate exact = estimate("water-glass-exact", settingsFor("photon", 32, 64), 6, 4);
     checkAgreement(overlap, exact, 0.02);
-    checkAgreement(exact, estimate("water-glass-exact", settingsFor("path", 32, 2048), 6, 4), 0.03);
-    checkAgreement(overlap, estimate("water-glass-overlap", settingsFor("path", 32, 2048), 6, 4), 0.03);
+    checkSamePaths("water-glass-overlap", "water-glass-exact");
+    const Estimate path = estimate("water-glass-exact", settingsFor("path", 32, 2048), 6, 4);
+    checkAgreement(exact, path, 0.03);
+    checkAgreement(overlap, path, 0.03);
 }
 
 TEST_CASE("ice afloat in a glass of water, as overlapping and as touching meshes: paths are the same ones") {
-    // One seed's random numbers meet the same surfaces at the same places, but for rounding.
-    const Estimate overlap = estimate("iced-water-overlap", settingsFor("path", 32, 64), 2, 8);
-    const Estimate touching = estimate("iced-water-exact", settingsFor("path", 32, 64), 2, 8);
-    for (size_t i = 0; i < overlap.mean.size(); ++i) {
-        CAPTURE(i);
-        CHECK(overlap.mean[i] == doctest::Approx(touching.mean[i]).epsilon(0.01));
-    }
+    checkSamePaths("iced-water-overlap", "iced-water-exact");
 }
 
 TEST_CASE("and photons of both agree with each other") {
