@@ -153,12 +153,12 @@ PathGroups groupsOf(const GatherInput& input, const PhotonTreeView& tree, RunCon
 
 }  // namespace
 
-RadiusRule grown(RadiusRule rule, uint64_t photons) {
-    const auto growth = static_cast<float>(std::cbrt(square(static_cast<double>(photons) / rule.photons)));
-    if (growth <= 1) return rule;
+RadiusRule scaledTo(uint64_t photons, RadiusRule rule) {
+    constexpr double kLeast = 0.4;
+    const double growth = std::max(kLeast, std::cbrt(square(static_cast<double>(photons) / rule.photons)));
     uint32_t& mostCount = rule.irradiance.bandwidth.mostCount;
-    mostCount = static_cast<uint32_t>(static_cast<float>(mostCount) * growth);
-    rule.reachAtMean *= growth;
+    mostCount = static_cast<uint32_t>(std::lround(static_cast<double>(mostCount) * growth));
+    rule.reachAtMean *= static_cast<float>(growth);
     return rule;
 }
 
@@ -170,7 +170,7 @@ ClassGather::ClassGather(const GatherInput& input, PhotonClass c, const GatherSe
                          const RadiusRule& rule, const ProgressiveRadius& progressive, RunContext& run)
     : tree_(input.map.photons(c)),
       index_(makeIndex(settings.index, tree_, run)),
-      rule_(grown(rule, tree_.count)),
+      rule_(scaledTo(tree_.count, rule)),
       progressive_(progressive),
       wavelengthShare_(settings.wavelengthShare * settings.progressive.scale),
       groups_(groupsOf(input, tree_, run)),

@@ -59,7 +59,7 @@ struct ProgressiveRadius {
 
 // Of one class.
 struct RadiusRule {
-    double photons = 0;  // in the class, up to which the largest bandwidth stays as it is; see grown()
+    double photons = 0;  // in the class, for which the largest bandwidth is as it says; see scaledTo()
     IrradianceRule irradiance;
     float reachAtMean = 0;     // photons of the class's mean density that the largest bandwidth holds
     uint32_t minCount = 0;     // photons that the radius grows to hold where the bandwidth is less
@@ -69,8 +69,10 @@ struct RadiusRule {
 
 // The rule for a class of so many photons. The more there are, the more of them the largest bandwidths hold: by
 // N^(2/3), so that in two dimensions variance and squared bias fall alike (Silverman 1986, section 4.3). Were the count
-// fixed, variance would not fall.
-RadiusRule grown(RadiusRule rule, uint64_t photons);
+// fixed, variance would not fall, and the few photons of a small map would be smoothed over all of a caustic. But not
+// below two fifths: more of the error would be variance then, of which emission by Sobol's points leaves a third to a
+// half of what errors are estimated by, so that pictures would be better than they say.
+RadiusRule scaledTo(uint64_t photons, RadiusRule rule);
 
 struct GatherSettings {
     IndexKind index = IndexKind::Kd;
