@@ -19,7 +19,6 @@ struct Key {
 };
 
 constexpr size_t kParallelPhotons = 32768;  // fewer are not worth a task
-constexpr size_t kGrain = 1024;             // blocks or nodes a task
 
 class Sorter {
   public:
@@ -102,7 +101,7 @@ class Sorter {
 
 UnsetVector<Key> makeKeys(std::span<const PackedPhoton> photons, ThreadPool& pool) {
     UnsetVector<Key> keys(photons.size());
-    pool.forRange(photons.size(), kGrain * kBlockSize, [&](size_t begin, size_t end) {
+    pool.forRange(photons.size(), kTreeGrain * kBlockSize, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i) {
             const Vec3 p = photons[i].position;
             if (!validPosition(p))
@@ -116,7 +115,7 @@ UnsetVector<Key> makeKeys(std::span<const PackedPhoton> photons, ThreadPool& poo
 }
 
 void fillBlocks(std::span<const Key> keys, std::span<const PackedPhoton> photons, PhotonTree& tree, ThreadPool& pool) {
-    pool.forRange(tree.blocks.size(), kGrain, [&](size_t begin, size_t end) {
+    pool.forRange(tree.blocks.size(), kTreeGrain, [&](size_t begin, size_t end) {
         for (size_t b = begin; b < end; ++b) {
             PhotonBlock& block = tree.blocks[b];
             for (size_t i = 0; i < kBlockSize; ++i) {
@@ -135,7 +134,7 @@ void fillBlocks(std::span<const Key> keys, std::span<const PackedPhoton> photons
 void fillNodes(PhotonTree& tree, ThreadPool& pool) {
     const KdShape shape(tree.count);
     const auto fillLevel = [&](size_t level, const auto& children) {
-        pool.forRange(shape.size[level], kGrain, [&](size_t begin, size_t end) {
+        pool.forRange(shape.size[level], kTreeGrain, [&](size_t begin, size_t end) {
             for (size_t i = begin; i < end; ++i) {
                 const size_t from = i * kNodeWidth;
                 tree.nodes[shape.first[level] + i] =

@@ -16,6 +16,7 @@
 namespace lsde {
 
 inline constexpr uint32_t kBlockSize = 16;     // photons
+inline constexpr size_t kTreeGrain = 1024;     // blocks or nodes that are worth a task
 inline constexpr uint32_t kNodeWidth = 8;      // children
 inline constexpr float kAbsentPhoton = 1e30F;  // each coordinate of the last block's empty places
 

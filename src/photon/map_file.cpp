@@ -14,7 +14,6 @@ namespace lsde {
 namespace {
 
 constexpr ContainerKind kKind{"photons", kMapVersion};
-constexpr size_t kCopyGrain = 1024;  // blocks or nodes a task
 
 struct SectionNames {
     explicit SectionNames(PhotonClass c)
@@ -60,7 +59,7 @@ class ClassChecker {
     template <typename Problem>
     void checkEach(ThreadPool& pool, size_t count, const Problem& problem) const {
         std::atomic<size_t> first = count;
-        pool.forRange(count, kCopyGrain, [&](size_t begin, size_t end) {
+        pool.forRange(count, kTreeGrain, [&](size_t begin, size_t end) {
             for (size_t i = begin; i < end && i < first; ++i) {
                 if (problem(i).empty()) continue;
                 size_t lowest = first;

@@ -9,7 +9,7 @@ using namespace lsde;
 TEST_CASE("the largest bandwidths hold more photons where a class has more than its rule is for, fewer below") {
     const RadiusRule rule = GatherSettings().caustic;
     const auto times = [&](double factor) { return scaledTo(static_cast<uint64_t>(factor * rule.photons), rule); };
-    const RadiusRule same = times(1), fewer = times(1 / 2.0), least = times(0), many = times(27);
+    const RadiusRule same = times(1), fewer = times(0.5), least = times(0), many = times(27);
     CHECK(same.irradiance.bandwidth.mostCount == rule.irradiance.bandwidth.mostCount);
     CHECK(same.reachAtMean == doctest::Approx(rule.reachAtMean));
     CHECK(fewer.irradiance.bandwidth.mostCount == std::lround(std::cbrt(0.25) * rule.irradiance.bandwidth.mostCount));

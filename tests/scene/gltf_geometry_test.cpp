@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <numbers>
 #include <numeric>
 
 #include "scene/gltf_file.h"
@@ -184,15 +185,15 @@ TEST_CASE("a mirroring node flips the winding, and normals stay on the front") {
 
 TEST_CASE("nested rotation, mirroring and uneven scale place points by the product, normals by the inverse transpose") {
     // Parent: turned by 90 degrees about z and scaled unevenly. Child: turned by 45 degrees about x, mirrored, moved.
+    const double angle = std::numbers::pi / 4, c = std::cos(angle), s = std::sin(angle);
     GltfFile file = withNormals({0.6F, 0, 0.8F, 0, 0, 1, 0, 0, 1});
     file["/nodes/0"] = {{"mesh", 0},
-                        {"rotation", {std::sin(kRootHalf), 0, 0, std::cos(kRootHalf)}},
+                        {"rotation", {std::sin(angle / 2), 0, 0, std::cos(angle / 2)}},
                         {"scale", {1, 1, -3}},
                         {"translation", {1, 2, 3}}};
     file.add("nodes", {{"children", {0}}, {"rotation", {0, 0, kRootHalf, kRootHalf}}, {"scale", {2, 0.5, 1}}});
     file["/scenes/0/nodes"] = {1};
     const Mesh m = load(file).meshes.at(0);
-    const double angle = 2 * kRootHalf, c = std::cos(angle), s = std::sin(angle);
     const auto place = [&](glm::dvec3 p) {
         p.z *= -3;
         p = glm::dvec3(p.x, c * p.y - s * p.z, s * p.y + c * p.z) + glm::dvec3(1, 2, 3);

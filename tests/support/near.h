@@ -7,8 +7,8 @@
 
 namespace lsde::test {
 
-inline void checkNear(Vec3 a, Vec3 b, float tolerance = 1e-6F) {
-    CHECK_MESSAGE(glm::length(a - b) < tolerance,
+inline void checkNear(Vec3 a, Vec3 b) {
+    CHECK_MESSAGE(glm::length(a - b) < 1e-6F,
                   a.x << ' ' << a.y << ' ' << a.z << " for " << b.x << ' ' << b.y << ' ' << b.z);
 }
 
