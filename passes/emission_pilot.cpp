@@ -49,6 +49,17 @@ std::vector<LightPaths> tracePilot(LightTracerInput input, uint64_t paths, Threa
     return results;
 }
 
+Dispersion dispersionOf(const std::vector<LightPaths>& pilot, PhotonClass c, ThreadPool& pool) {
+    constexpr size_t kParts = 16;
+    std::vector<std::vector<PackedPhoton>> parts(kParts);
+    for (size_t i = 0; i < pilot.size(); ++i) {
+        const std::vector<PackedPhoton>& photons = pilot[i].photons[static_cast<size_t>(c)];
+        std::vector<PackedPhoton>& part = parts[i * kParts / pilot.size()];
+        part.insert(part.end(), photons.begin(), photons.end());
+    }
+    return measureDispersion(parts, pool);
+}
+
 std::vector<AimTrial> tryAims(LightTracerInput input, ThreadPool& pool) {
     constexpr uint64_t kPaths = 65536;
     // Dimmer than this share of the mean over caustics, light is not worth more.
@@ -106,8 +117,11 @@ PilotFindings pilotEmission(LightTracerInput input, ThreadPool& pool) {
     constexpr double kLeastRaysAfterDiffuse = 0.6, kMostRaysAfterDiffuse = 2;
     constexpr uint64_t kRaysOfAimed = 4;  // where none was seen
     input.fairPower = input.sources.fairPower();
-    if (input.store == Store::Caustic) return {input.fairPower, kPilotDiffuseBoost};
     const std::vector<LightPaths> results = tracePilot(input, kPaths, pool);
+    PilotFindings found{input.fairPower, kPilotDiffuseBoost, {}};
+    for (const PhotonClass c : {PhotonClass::Caustic, PhotonClass::Indirect})
+        found.dispersion[static_cast<size_t>(c)] = dispersionOf(results, c, pool);
+    if (input.store == Store::Caustic) return found;
     Ledger ledger(input.scene.lights().size(), input.scene.objects().size());
     AfterDiffuse after;
     uint64_t rays = 0;
@@ -130,7 +144,9 @@ PilotFindings pilotEmission(LightTracerInput input, ThreadPool& pool) {
     const double raysOfAimed =
         static_cast<double>(after.aimedRays + kRaysOfAimed) / static_cast<double>(after.aimedBounces + 1);
     const double boost = aimed > 0 ? aimed / (after.inCones * raysOfAimed) : 0;
-    return {input.fairPower * static_cast<float>(fairer), static_cast<float>(boost)};
+    found.fairPower *= static_cast<float>(fairer);
+    found.diffuseBoost = static_cast<float>(boost);
+    return found;
 }
 
 }  // namespace lsde

@@ -51,6 +51,7 @@ Emission::Emission(const Scene& scene, const EmitSettings& settings, RunContext&
     if (settings_.aim) sources_.learn(tryAims(tracer_, run.pool));
     const PilotFindings found = pilotEmission(tracer_, run.pool);
     tracer_.fairPower = found.fairPower;
+    dispersion_ = found.dispersion;
     if (settings_.aim) diffuseAim_ = DiffuseAim(scene, found.diffuseBoost);
 }
 
@@ -84,6 +85,7 @@ PhotonMap Emission::finish(uint64_t total, RunContext& run) {
     h.aimed = settings_.aim;
     for (const Light& light : scene_.lights()) h.lights.push_back(light.name);
     h.objects = scene_.objects();
+    h.dispersion = dispersion_;
     h.ranges = ranges_;
     h.ledger = ledger_;
     for (const PhotonClass c : {PhotonClass::Caustic, PhotonClass::Indirect, PhotonClass::Direct})

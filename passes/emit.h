@@ -52,6 +52,7 @@ class Emission {
     LightTracerInput tracer_;
     std::array<std::vector<PackedPhoton>, kPhotonClasses> photons_;
     Ledger ledger_;
+    std::array<Dispersion, kPhotonClasses> dispersion_;
     std::vector<IndexRange> ranges_;
 };
 

@@ -154,7 +154,7 @@ PathGroups groupsOf(const GatherInput& input, const PhotonTreeView& tree, RunCon
 }  // namespace
 
 RadiusRule scaledTo(uint64_t photons, RadiusRule rule) {
-    constexpr double kLeast = 0.4;
+    constexpr double kLeast = 0.15;
     const double growth = std::max(kLeast, std::cbrt(square(static_cast<double>(photons) / rule.photons)));
     uint32_t& mostCount = rule.irradiance.bandwidth.mostCount;
     mostCount = static_cast<uint32_t>(std::lround(static_cast<double>(mostCount) * growth));
@@ -173,6 +173,7 @@ ClassGather::ClassGather(const GatherInput& input, PhotonClass c, const GatherSe
       rule_(scaledTo(tree_.count, rule)),
       progressive_(progressive),
       wavelengthShare_(settings.wavelengthShare * settings.progressive.scale),
+      dispersion_(input.map.header.dispersion[static_cast<size_t>(c)]),
       groups_(groupsOf(input, tree_, run)),
       maxRadius_(radiusAtMean(input, c, rule_.growthAtMean)),
       reach_(radiusAtMean(input, c, rule_.reachAtMean)) {
@@ -213,11 +214,11 @@ DensityQuery ClassGather::densityQuery(const PhotonGatherQuery& query, GatherScr
     return density;
 }
 
-float ClassGather::sharedVariance(const PhotonGatherQuery& query, Vec3 wo, float area) {
+float ClassGather::sharedVariance(const PhotonGatherQuery& query, Vec3 wo, float area, float photons) const {
     // The integral of Epanechnikov's kernel squared is that of an even one of 3/4 the area.
     const float kernel = 0.75F * area;
     const float pixel = square(query.point.footprint) / std::max(0.01F, std::fabs(wo.z));
-    return kernel / (kernel + pixel);
+    return kernel / (kernel + pixel) * dispersion_.at(photons * (kernel + pixel) / area);
 }
 
 // Whether the light was found in the cache; else `density` gets the bandwidth as its least radius.
@@ -236,7 +237,8 @@ bool ClassGather::known(const PhotonGatherQuery& query, DensityQuery& density, c
             if (!isBlack(light.irradiance[g]))
                 scratch.light.paths.push_back({static_cast<uint16_t>(g), albedo * light.irradiance[g]});
         scratch.light.total = albedo * light.irradiance[groups_.size()];
-        scratch.light.variance = albedo * albedo * light.variance * sharedVariance(query, wo, light.over.area());
+        scratch.light.variance = albedo * albedo * light.variance *
+                                 sharedVariance(query, wo, light.over.area(), static_cast<float>(light.over.count));
         return true;
     }
     density.minRadius = std::max(density.minRadius, std::min(light.bandwidth.radius, reach));
@@ -309,7 +311,9 @@ const GatheredLight& ClassGather::gather(const PhotonGatherQuery& query, const B
         g.glossy *= perPath;
     }
     out.total = total.diffuse * scale + total.glossy * perPath;
-    out.variance = squares * square(scale) * sharedVariance(query, wo, kPi * square(disc.radius) * disc.stretch);
+    out.variance = squares * square(scale) *
+                   sharedVariance(query, wo, kPi * square(disc.radius) * disc.stretch,
+                                  static_cast<float>(out.photons * every.stride));
     return out;
 }
 

@@ -70,8 +70,7 @@ struct RadiusRule {
 // The rule for a class of so many photons. The more there are, the more of them the largest bandwidths hold: by
 // N^(2/3), so that in two dimensions variance and squared bias fall alike (Silverman 1986, section 4.3). Were the count
 // fixed, variance would not fall, and the few photons of a small map would be smoothed over all of a caustic. But not
-// below two fifths: more of the error would be variance then, of which emission by Sobol's points leaves a third to a
-// half of what errors are estimated by, so that pictures would be better than they say.
+// below a seventh, where noise would hide what is there.
 RadiusRule scaledTo(uint64_t photons, RadiusRule rule);
 
 struct GatherSettings {
@@ -109,9 +108,10 @@ class ClassGather {
                                 GatherScratch& scratch) const;
 
   private:
-    // What a pixel's samples, spread over its footprint, have of the variance of one of them, with a kernel of an area
-    // (m2): about its share in both together.
-    static float sharedVariance(const PhotonGatherQuery& query, Vec3 wo, float area);
+    // What a pixel's samples, spread over its footprint, have of the variance that independent paths would give one of
+    // them, with a kernel of an area (m2) and so many photons: about its share in both together, and as much as the
+    // sequence of paths leaves where so many photons lie.
+    float sharedVariance(const PhotonGatherQuery& query, Vec3 wo, float area, float photons) const;
     DensityQuery densityQuery(const PhotonGatherQuery& query, GatherScratch& scratch) const;
     bool known(const PhotonGatherQuery& query, DensityQuery& density, const Bsdf& bsdf, Vec3 wo,
                GatherScratch& scratch) const;
@@ -121,6 +121,7 @@ class ClassGather {
     RadiusRule rule_;
     ProgressiveRadius progressive_;
     float wavelengthShare_;
+    Dispersion dispersion_;
     PathGroups groups_;
     float maxRadius_ = 0;  // m, of a growing radius
     float reach_ = 0;      // m, of the largest bandwidth

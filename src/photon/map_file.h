@@ -10,13 +10,14 @@
 #include "base/fixed_point.h"
 #include "base/run.h"
 #include "base/scratch_array.h"
+#include "photon/dispersion.h"
 #include "photon/kd_index.h"
 #include "photon/ledger.h"
 
 namespace lsde {
 
 // Of the file's format: sections, records and header.
-inline constexpr uint32_t kMapVersion = 3;
+inline constexpr uint32_t kMapVersion = 4;
 
 enum class PhotonClass : uint8_t { Caustic = 0, Indirect = 1, Direct = 2 };
 inline constexpr int kPhotonClasses = 3;
@@ -38,9 +39,10 @@ struct MapHeader {
     bool aimed = true;
     std::vector<std::string> lights;   // names, index = Photon::light
     std::vector<std::string> objects;  // names, index = ledger's object
-    std::vector<IndexRange> ranges;    // sorted, disjoint, adjacent ones joined
-    Ledger ledger;                     // sums over the ranges' paths
-    uint64_t emittedPaths() const;     // number of indices in ranges
+    std::array<Dispersion, kPhotonClasses> dispersion;
+    std::vector<IndexRange> ranges;  // sorted, disjoint, adjacent ones joined
+    Ledger ledger;                   // sums over the ranges' paths
+    uint64_t emittedPaths() const;   // number of indices in ranges
 };
 
 class PhotonMap {

@@ -48,6 +48,13 @@ Json toJson(const Ledger& ledger) {
             {"maxAimWeight", ledger.maxAimWeight}};
 }
 
+Json toJson(const std::array<Dispersion, kPhotonClasses>& dispersion) {
+    Json out = Json::object();
+    for (size_t c = 0; c < kPhotonClasses; ++c)
+        out[std::string(name(static_cast<PhotonClass>(c)))] = dispersion[c].at4TimesPowersOf2;
+    return out;
+}
+
 Json toJson(const StoredClass& c) {
     Json out = {{"count", c.count}};
     if (c.count > 0)
@@ -141,6 +148,19 @@ Ledger ledgerOf(const Json& json, size_t lights, size_t objects) {
     return ledger;
 }
 
+std::array<Dispersion, kPhotonClasses> dispersionOf(const Json& json) {
+    std::array<Dispersion, kPhotonClasses> out;
+    for (size_t c = 0; c < kPhotonClasses; ++c) {
+        const Json& values = array(json, std::string(name(static_cast<PhotonClass>(c))), Dispersion::kCounts);
+        for (size_t i = 0; i < Dispersion::kCounts; ++i) {
+            const double value = numberOf(values[i], "dispersion");
+            if (!(value >= 0 && value <= 1)) fail("dispersion", values[i], "0 to 1");
+            out[c].at4TimesPowersOf2[i] = static_cast<float>(value);
+        }
+    }
+    return out;
+}
+
 Vec3 vec3Of(const Json& value) {
     if (!value.is_array() || value.size() != 3) fail("bounds", value, "[x, y, z]");
     Vec3 v;
@@ -172,11 +192,13 @@ std::string toJson(const MapDescription& map) {
     Json classes = Json::object();
     for (size_t c = 0; c < kPhotonClasses; ++c)
         if (map.classes[c].stored) classes[std::string(name(static_cast<PhotonClass>(c)))] = toJson(map.classes[c]);
-    const Json json = {{"sceneHash", h.sceneHash},   {"units", h.units},           {"seed", h.seed},
-                       {"totalPaths", h.totalPaths}, {"maxDepth", h.maxDepth},     {"store", h.store},
-                       {"aimed", h.aimed},           {"lights", h.lights},         {"objects", h.objects},
-                       {"ranges", ranges},           {"ledger", toJson(h.ledger)}, {"classes", classes},
-                       {"record", kRecord}};
+    const Json json = {{"sceneHash", h.sceneHash}, {"units", h.units},
+                       {"seed", h.seed},           {"totalPaths", h.totalPaths},
+                       {"maxDepth", h.maxDepth},   {"store", h.store},
+                       {"aimed", h.aimed},         {"lights", h.lights},
+                       {"objects", h.objects},     {"dispersion", toJson(h.dispersion)},
+                       {"ranges", ranges},         {"ledger", toJson(h.ledger)},
+                       {"classes", classes},       {"record", kRecord}};
     return json.dump(1);
 }
 
@@ -200,6 +222,7 @@ MapDescription fromJson(std::string_view text) {
     h.aimed = at(json, "aimed").get<bool>();
     h.lights = stringsOf(json, "lights");
     h.objects = stringsOf(json, "objects");
+    h.dispersion = dispersionOf(at(json, "dispersion"));
     h.ranges = rangesOf(json, h.totalPaths);
     h.ledger = ledgerOf(at(json, "ledger"), h.lights.size(), h.objects.size());
     const Json& classes = at(json, "classes");

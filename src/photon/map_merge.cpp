@@ -88,7 +88,12 @@ PhotonMap merge(std::vector<NamedMap> maps, RunContext& run) {
     PhotonMap merged;
     merged.header = maps[0].map.header;
     merged.header.ranges = joinRanges(maps);
-    for (size_t i = 1; i < maps.size(); ++i) merged.header.ledger.merge(maps[i].map.header.ledger);
+    for (size_t i = 1; i < maps.size(); ++i) {
+        const MapHeader& header = maps[i].map.header;
+        merged.header.ledger.merge(header.ledger);
+        for (size_t c = 0; c < kPhotonClasses; ++c)
+            merged.header.dispersion[c] = larger(merged.header.dispersion[c], header.dispersion[c]);
+    }
     for (int c = 0; c < kPhotonClasses; ++c) {
         const auto photonClass = static_cast<PhotonClass>(c);
         if (!maps[0].map.stores(photonClass)) continue;

@@ -33,6 +33,8 @@ PhotonMap mapOf(IndexRange range, bool all = false) {
     h.store = all ? "all" : "caustic";
     h.lights = {"lamp", "the \"sun\""};
     h.objects = {"floor", "wall", "B\u00e4lle"};
+    for (size_t i = 0; i < Dispersion::kCounts; ++i)
+        h.dispersion[1].at4TimesPowersOf2[i] = 1 / (1.25F + static_cast<float>(i));
     if (range.begin < range.end) h.ranges = {range};
     h.ledger = Ledger(2, 3);
     std::vector<PackedPhoton> photons[kPhotonClasses];
@@ -130,6 +132,7 @@ TEST_CASE_FIXTURE(Fixture, "a map comes back from its file as it was, with at mo
             CHECK(read.stores(photonClass) == (all || c == 0));
             count += a.count;
             CHECK(a.count == b.count);
+            CHECK(map.header.dispersion[static_cast<size_t>(c)] == read.header.dispersion[static_cast<size_t>(c)]);
             CHECK(a.bounds.lo == b.bounds.lo);
             CHECK(a.bounds.hi == b.bounds.hi);
             CHECK((sameBytes(a.blocks, b.blocks) && sameBytes(a.nodes, b.nodes) && sameBytes(a.payload, b.payload)));
@@ -181,6 +184,18 @@ TEST_CASE_FIXTURE(Fixture, "merged shards are the bytes of the one emission, in 
         writePhotonMap(folder / "merged", resumed, run);
         CHECK(contentOf(folder / "merged") == contentOf(file));
     }
+}
+
+TEST_CASE_FIXTURE(Fixture, "of shards' dispersions the larger holds, in any order") {
+    PhotonMap other = mapOf({100, 200});
+    other.header.dispersion[1].at4TimesPowersOf2[0] = 1;
+    other.header.dispersion[1].at4TimesPowersOf2[1] = 0;
+    writePhotonMap(folder / "a", mapOf({0, 100}), run);
+    writePhotonMap(folder / "b", other, run);
+    Dispersion expected = mapOf({0, 100}).header.dispersion[1];
+    expected.at4TimesPowersOf2[0] = 1;
+    CHECK(mergePhotonMaps({folder / "a", folder / "b"}, run).header.dispersion[1] == expected);
+    CHECK(mergePhotonMaps({folder / "b", folder / "a"}, run).header.dispersion[1] == expected);
 }
 
 TEST_CASE_FIXTURE(Fixture, "ranges with a gap stay apart until it is filled") {
@@ -314,6 +329,8 @@ TEST_CASE_FIXTURE(Fixture, "a header that is not one is refused by field") {
     CHECK(contains(error("\"maxDepth\": 64", "\"maxDepth\": 4294967296"), "\"maxDepth\""));
     CHECK(contains(error("\"store\": \"caustic\"", "\"store\": \"some\""), "\"store\": \"some\", expected"));
     CHECK(contains(error("\"aimed\": true", "\"aimed\": 1"), "\"aimed\""));
+    CHECK(contains(error("   0.8", "   1.8"), "\"dispersion\": 1.8"));
+    CHECK(contains(error("   1.0,", ""), "\"caustic\": 7 elements, expected 8"));
     CHECK(contains(error("W, m, linear", "W, ft, linear"), "\"units\""));
     CHECK(contains(error("\"lamp\"", "12"), "\"lights\": 12, expected a string"));
     CHECK(contains(error("\"lamp\",", ""), "\"emittedByLight\": 2 elements, expected 1"));
