@@ -14,6 +14,7 @@ class Clock {
     Clock(std::optional<double> cpuLimit, std::optional<double> wallLimit)
         : cpu_(cpuLimit.has_value()), limit_(cpuLimit.value_or(wallLimit.value_or(kNone))) {}
 
+    bool wall() const { return !cpu_; }
     bool limited() const { return limit_ < kNone; }
     double used() const { return cpu_ ? cpuSeconds() : wallSeconds(); }
     double limit() const { return limit_; }  // s; infinite if there is none

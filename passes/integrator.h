@@ -33,7 +33,7 @@ class Integrator {
     // Samples [begin, end) of every pixel (or as many light paths as there are pixels, each). Numbers of samples are
     // means over the pixels: of a fraction, as many pixels get one more. The first begin of all is whole.
     virtual void render(double begin, double end, RunContext& run) = 0;
-    // The mean of `samples` samples, at least one.
+    // The mean of `samples` samples, more than none.
     virtual RgbImage develop(int layer, double samples) const = 0;
     virtual uint64_t notFinite() const = 0;
     // Of that mean; none from methods that do not know.

@@ -312,8 +312,8 @@ void addRender(CLI::App& app, RenderOptions& o) {
     app.add_option("--photons", o.photons, "light paths to emit (default 1000000)")
         ->check(positiveNumber())
         ->type_name("N");
-    app.add_option("--spp", o.spp, "samples a pixel, on average, at least 1 (default 64)")
-        ->check(numberFrom(1, 1e9))
+    app.add_option("--spp", o.spp, "samples a pixel, on average, at least 1/64 (default 64)")
+        ->check(numberFrom(1.0 / 64, 1e9))
         ->type_name("N");
     app.add_option("--time", o.wall, "wall seconds for the whole run")->check(positiveNumber())->type_name("SEC");
     app.add_option("--cpu-time", o.cpu, "CPU seconds of all threads for the whole run")

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "passes/cache.h"
 
@@ -9,7 +11,7 @@ namespace lsde {
 
 namespace {
 
-constexpr uint64_t kFirstRound = 1 << 16;
+constexpr uint64_t kFirstRound = 1 << 14;
 
 void checkMapFits(const Scene& scene, const PhotonMap& map, const MapRequest& request, RunContext& run) {
     const MapHeader& h = map.header;
@@ -69,26 +71,31 @@ SourcedMap mapByCount(const Scene& scene, const MapRequest& request, RunContext&
     return out;
 }
 
-PhotonMap mapByTime(const Scene& scene, const EmitSettings& emit, const Clock& clock, double seconds, RunContext& run) {
+PhotonMap mapByTime(const Scene& scene, const EmitSettings& emit, const Clock& clock, MapLimits limits,
+                    RunContext& run) {
     constexpr double kBuildSeconds = 0.5e-6;  // a photon: tree and layout
+    const double begin = clock.used();
     Emission emission(scene, emit, run);
     const double start = clock.used();
+    const double seconds = limits.seconds - (start - begin);
     uint64_t next = 0;
     {
         const PhaseTimer timer(run, "emit");
-        uint64_t round = kFirstRound;
+        uint64_t round = std::min(kFirstRound, limits.paths);
         while (!run.interrupted()) {
             emission.trace(next, round, run);
             next += round;
             const double used = clock.used() - start;
-            run.progress("emit", used / seconds);
+            run.progress("emit", used / std::max(used, seconds));
             const uint64_t stored = emission.stored(PhotonClass::Caustic) + emission.stored(PhotonClass::Indirect);
             // Where nothing arrives, more of it will not help.
-            if (stored == 0 && next >= 4 * kFirstRound) break;
+            if (stored == 0 && next >= 16 * kFirstRound) break;
             const double perPath = (used + kBuildSeconds * static_cast<double>(stored)) / static_cast<double>(next);
             const double affordable = seconds / perPath - static_cast<double>(next);
-            if (affordable < static_cast<double>(kFirstRound) / 4) break;
+            if (affordable < static_cast<double>(kFirstRound)) break;
             round = static_cast<uint64_t>(std::min(affordable, 4.0 * static_cast<double>(next)));
+            round = std::min(round, limits.paths - next);
+            if (round == 0) break;
         }
     }
     const PhaseTimer timer(run, "build");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <limits>
 #include <optional>
 
 #include "passes/clock.h"
@@ -26,7 +27,12 @@ struct SourcedMap {
 // A map of a number of light paths that is known beforehand. Throws Error if the file's scene is another.
 SourcedMap mapByCount(const Scene& scene, const MapRequest& request, RunContext& run);
 
-// A map for the seconds given, of emission and tree together.
-PhotonMap mapByTime(const Scene& scene, const EmitSettings& emit, const Clock& clock, double seconds, RunContext& run);
+// What a map by time may take.
+struct MapLimits {
+    double seconds;  // of emission and tree together, by the clock
+    uint64_t paths = std::numeric_limits<uint64_t>::max();
+};
+PhotonMap mapByTime(const Scene& scene, const EmitSettings& emit, const Clock& clock, MapLimits limits,
+                    RunContext& run);
 
 }  // namespace lsde

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kDefaultSamples = 64;
 // Of a time limit, where there are caustics: what the pixels can spare, within bounds.
-constexpr double kLeastEmissionShare = 0.33, kMostEmissionShare = 0.45;
+constexpr double kLeastEmissionShare = 0.25, kMostEmissionShare = 0.45;
 constexpr double kPixelSeconds = 6e-5;  // for half a dozen samples, roughly, of a pixel that sees a surface
 constexpr uint32_t kPilotRadiusPhotons = 50;
 
@@ -52,7 +52,8 @@ double samplesForError(const Integrator& integrator, double done, double limit) 
     return std::clamp(std::floor(done * (error.camera / left - 1)), 1.0, done);
 }
 
-// Samples until the count or the time is reached; returns how many. At least one is taken.
+// Samples until the count or the time is reached; returns how many. At least one for each square of eight by eight
+// pixels is taken.
 double takeSamples(Integrator& integrator, const SampleLimits& limits, RunContext& run, bool& interrupted) {
     // Fractions are few, so that they are exact in decimal as well; less than the last is lost of the time.
     constexpr double kFraction = 1.0 / 64, kLeastStep = 1.0 / 16;
@@ -61,7 +62,7 @@ double takeSamples(Integrator& integrator, const SampleLimits& limits, RunContex
     constexpr double kLastSamples = 2, kSure = 0.95;
     const PhaseTimer timer(run, "camera");
     const auto begin = static_cast<double>(limits.begin);
-    double done = 0, step = 1;
+    double done = 0, step = limits.clock && !limits.whole ? kFraction : 1;
     const double start = limits.clock ? limits.clock->used() : 0;
     double usedBefore = 0;
     while (!limits.count || done < *limits.count) {
@@ -89,7 +90,7 @@ double takeSamples(Integrator& integrator, const SampleLimits& limits, RunContex
         usedBefore = used;
         const double affordable = (clock.left() - limits.reserve) / perSample;
         run.progress("camera", used / std::max(1e-9, clock.limit() - limits.reserve - start));
-        if (affordable < (limits.whole ? 0.5 : kLeastStep)) break;
+        if (affordable < (limits.whole ? 0.5 : first ? kFraction : kLeastStep)) break;
         const double share = first || (adapted && affordable <= kLastSamples) ? kSure : 0.5;
         step = std::min(share * affordable, first ? SamplePlan::kUniform - done : 64.0);
         step = limits.whole ? std::max(1.0, std::floor(step)) : std::max(1.0, std::floor(step / kFraction)) * kFraction;
@@ -177,8 +178,11 @@ class Render {
         double pixels = 0;
         for (const Camera& c : cameras_)
             pixels += filledShare(c) * static_cast<double>(c.filmWidth()) * static_cast<double>(c.filmHeight());
-        return std::clamp(1 - kPixelSeconds * pixels / clock_.limit(), kLeastEmissionShare, kMostEmissionShare);
+        const double cpuSeconds = clock_.limit() * (clock_.wall() ? run_.pool.threads() : 1);
+        return std::clamp(1 - kPixelSeconds * pixels / cpuSeconds, kLeastEmissionShare, kMostEmissionShare);
     }
+
+    double emissionSeconds() const { return emissionShare() * (clock_.left() - reserve()); }
 
     // Of the picture: where there is anything to see.
     double filledShare(const Camera& camera) const {
@@ -198,7 +202,9 @@ class Render {
     double reserve() const {  // s: developing and writing the picture
         const double values = static_cast<double>(camera().filmWidth()) * camera().filmHeight() * 3 *
                               static_cast<double>(layers_.filmLayers().size());
-        return 0.02 + 6e-8 * values;
+        const double seconds = 0.03 + 9.5e-8 * values;
+        // Compression is shared by the threads.
+        return clock_.wall() ? seconds * (0.2 + 0.8 / run_.pool.threads()) : seconds;
     }
 
     bool indirectFromMap() const { return settings_.indirectFromMap && layers_.wantsIndirect(); }
@@ -213,7 +219,7 @@ class Render {
 
     PhotonMap map() {
         if (clock_.limited() && settings_.map.empty() && !settings_.photons)
-            return mapByTime(scene_, emitSettings(), clock_, emissionShare() * clock_.left(), run_);
+            return mapByTime(scene_, emitSettings(), clock_, {emissionSeconds()}, run_);
         SourcedMap sourced =
             mapByCount(scene_, {settings_.map, settings_.cache, settings_.otherScene, emitSettings()}, run_);
         result_.cachedMap = sourced.cached;
@@ -297,15 +303,23 @@ void Render::emitForError(double limit) {
     constexpr double kMostPhotons = 2e8;  // paths: 8 GB of photons
     constexpr double kLeastGrowth = 2, kMostGrowth = 8;
     EmitSettings emit = emitSettings();
-    for (;;) {
+    for (bool first = true;; first = false) {
         const double start = clock_.used();
-        map_ = emitPhotons(scene_, emit, run_);
+        SampleLimits limits{0, SamplePlan::kUniform, {}, 0, {}};
+        if (first && clock_.limited()) {
+            map_ = mapByTime(scene_, emit, clock_, {emissionSeconds(), kDefaultPhotons}, run_);
+            limits.clock = clock_.slice(0.5 * clock_.left());
+        } else {
+            map_ = emitPhotons(scene_, emit, run_);
+        }
         gather_.emplace(gatherInput(map_), gatherSettings(), run_);
         const auto pilot = method_.make({scene_, camera(), layers_, selected_, &*gather_, run_.seed});
-        takeSamples(*pilot, {0, SamplePlan::kUniform, {}, 0, {}}, run_, result_.interrupted);
-        const double photons = relativeError(*pilot, SamplePlan::kUniform)->photons;
-        const auto paths = static_cast<double>(emit.photons);
-        if (photons <= kShare * limit || paths >= kMostPhotons || result_.interrupted) return;
+        const double samples = takeSamples(*pilot, limits, run_, result_.interrupted);
+        const auto error = relativeError(*pilot, samples);
+        if (!error || result_.interrupted) return;
+        const double photons = error->photons;
+        const auto paths = static_cast<double>(map_.header.emittedPaths());
+        if (photons <= kShare * limit || paths >= kMostPhotons) return;
         const double growth = std::clamp(std::pow(photons / (kAim * limit), kExponent), kLeastGrowth, kMostGrowth);
         // Half of what time there is, at most: the rest is for the picture.
         if (clock_.limited() && growth * (clock_.used() - start) > 0.5 * clock_.left()) return;
@@ -342,7 +356,7 @@ void Render::progressivePasses() {
         run_.seed = hashCombine(seed, pass);  // independent photons
         const bool byTime = clock_.limited() && !settings_.photons && pass == 0;
         const PhotonMap map =
-            byTime ? mapByTime(scene_, emit, clock_, emissionShare() * slice, run_) : emitPhotons(scene_, emit, run_);
+            byTime ? mapByTime(scene_, emit, clock_, {emissionShare() * slice}, run_) : emitPhotons(scene_, emit, run_);
         run_.seed = seed;
         note(map);
         if (byTime) pathsEach = map.header.emittedPaths();

@@ -36,7 +36,8 @@ struct SampleStatistics {
 // neighbours, and on its own samples only through the factor that all pixels share: a count chosen by the values that
 // it averages would bias the mean (Kirk & Arvo 1991). Rates are bounded; what the bounds leave over all get alike.
 // Counts are powers of two, at which Sobol's points are distributed best: the larger or the smaller one by chance, so
-// that the mean is right.
+// that the mean is right. Of less than one, pixels far from each other are the first (Bayer 1973): a fourth of a sample
+// is one for each square of two by two.
 class SamplePlan {
   public:
     static constexpr uint64_t kUniform = SampleStatistics::kSamples;
@@ -57,6 +58,7 @@ class SamplePlan {
     uint64_t count(size_t pixel, double samples) const;
 
   private:
+    double orderOf(size_t pixel) const;
     std::vector<float> noiseAround(const std::vector<SampleStatistics>& statistics) const;
 
     int width_, height_;

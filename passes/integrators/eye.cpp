@@ -37,6 +37,8 @@ class EyeIntegrator : public Integrator {
     }
     RgbImage develop(int layer, double samples) const override { return film_.develop(layer, counts(samples)); }
     std::optional<PictureError> error(double samples) const override {
+        // What a pixel that nobody saw would show is not known.
+        if (samples < 1) return std::nullopt;
         return pictureError(statistics_, counts(samples));
     }
     uint64_t notFinite() const override { return notFinite_; }

@@ -63,7 +63,7 @@ class LightIntegrator : public Integrator {
 
   private:
     uint64_t pathsOf(double samples) const {
-        return static_cast<uint64_t>(std::llround(samples * static_cast<double>(pixels_)));
+        return static_cast<uint64_t>(std::ceil(samples * static_cast<double>(pixels_)));
     }
 
     struct Tracer {

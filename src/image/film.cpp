@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "image/fill.h"
 
 namespace lsde {
 
@@ -38,11 +39,13 @@ RgbImage Film::develop(int layer, std::span<const double> samples) const {
             const double* sum = &sums_[index(x, y, layer)];
             Rgb& pixel = image.at(x, y);
             const double count = samples[static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x)];
+            if (count == 0) continue;
             for (int c = 0; c < 3; ++c) pixel[c] = static_cast<float>(sum[c] / count);
             if (!isFinite(pixel))
                 throw Error(fmt::format("layer \"{}\": pixel ({}, {}) is ({}, {}, {}), expected finite values",
                                         layerName(layer), x, y, pixel.x, pixel.y, pixel.z));
         }
+    fillUnseen(image, samples);
     return image;
 }
 

@@ -23,8 +23,8 @@ class Film {
     const std::string& layerName(int layer) const { return names_[static_cast<size_t>(layer)]; }
 
     void add(int x, int y, int layer, Rgb value);
-    // Divides by the number of samples each pixel has had. Throws Error naming layer and pixel if the mean is not
-    // finite.
+    // Divides by the number of samples each pixel has had, and fills those that had none. Throws Error naming layer and
+    // pixel if the mean is not finite.
     RgbImage develop(int layer, double samples) const;
     RgbImage develop(int layer, std::span<const double> samples) const;  // of each pixel, row by row
     // Adds the other film's sums times a factor (progressive passes).

@@ -333,12 +333,17 @@ class Maps(Cli):
         self.refused('render', scene, '--camera', 'all', '-o', 'g.exr', '--progressive', '2', says='--camera all', code=2)
 
     def test_the_counts_that_a_time_limit_reached_make_the_same_picture(self):
-        result = self.run_lsde('render', SPHERE, '--size', '200x200', '--cpu-time', '2', '--no-cache', '-o', 't.exr', '--json', '-')
-        figures = json.loads(result.stdout)
-        self.run_lsde('render', SPHERE, '--size', '200x200', '--no-cache', '-o', 'c.exr', '--photons', figures['photonsEmitted'],
-                      '--spp', figures['samplesPerPixel'])
-        self.assertEqual((self.folder / 't.exr').read_bytes(), (self.folder / 'c.exr').read_bytes())
-        self.run_lsde('render', SPHERE, '--spp', '0.5', '-o', 'h.exr', code=2)
+        def samples_by_time(size, seconds):
+            given = ['render', SPHERE, '--size', size, '--no-cache', '--force']
+            result = self.run_lsde(*given, '--cpu-time', seconds, '-o', 't.exr', '--json', '-')
+            figures = json.loads(result.stdout)
+            self.run_lsde(*given, '-o', 'c.exr', '--photons', figures['photonsEmitted'], '--spp', figures['samplesPerPixel'])
+            self.assertEqual((self.folder / 't.exr').read_bytes(), (self.folder / 'c.exr').read_bytes())
+            return figures['samplesPerPixel']
+        samples_by_time('200x200', '2')
+        # Where not even one sample a pixel can be had in time, others are filled in.
+        self.assertLess(samples_by_time('1024x1024', '0.5'), 1)
+        self.run_lsde('render', SPHERE, '--spp', '0.015', '-o', 'h.exr', code=2)
         self.refused('render', SPHERE, '--spp', '4.5', '--progressive', '2', '-o', 'p.exr', says='--spp 4.5', code=2)
 
     def test_an_error_limit_ends_the_run_and_is_told(self):

@@ -76,6 +76,15 @@ TEST_CASE("a pixel's samples do not depend on its own values") {
     CHECK(after.rate(at(31, 15)) > before.rate(at(31, 15)));
 }
 
+TEST_CASE("of less than one sample a pixel those that have it lie on a lattice") {
+    const SamplePlan plan(kWidth, kHeight);
+    for (const int spacing : {2, 4, 8})
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = 0; x < kWidth; ++x)
+                REQUIRE(plan.count(at(x, y), 1.0 / (spacing * spacing)) ==
+                        (x % spacing == 0 && y % spacing == 0 ? 1 : 0));
+}
+
 TEST_CASE("numbers of samples may be fractions: as many pixels get one more") {
     const SamplePlan even(kWidth, kHeight);
     const SamplePlan adapted = planOfTwoSigmas();
