@@ -58,7 +58,8 @@ double takeSamples(Integrator& integrator, const SampleLimits& limits, RunContex
     // Fractions are few, so that they are exact in decimal as well; less than the last is lost of the time.
     constexpr double kFraction = 1.0 / 64, kLeastStep = 1.0 / 16;
     // What a sample costs is known while every pixel gets its first ones, and again when some were taken after them,
-    // which go where there is most to do: then up to so many are taken at once where time ends.
+    // which go where there is most to do and may cost ten times as much: then up to so many are taken at once where
+    // time ends.
     constexpr double kLastSamples = 2, kSure = 0.95;
     const PhaseTimer timer(run, "camera");
     const auto begin = static_cast<double>(limits.begin);
@@ -91,8 +92,8 @@ double takeSamples(Integrator& integrator, const SampleLimits& limits, RunContex
         const double affordable = (clock.left() - limits.reserve) / perSample;
         run.progress("camera", used / std::max(1e-9, clock.limit() - limits.reserve - start));
         if (affordable < (limits.whole ? 0.5 : first ? kFraction : kLeastStep)) break;
-        const double share = first || (adapted && affordable <= kLastSamples) ? kSure : 0.5;
-        step = std::min(share * affordable, first ? SamplePlan::kUniform - done : 64.0);
+        const double share = first || affordable <= kLastSamples ? kSure : 0.5;
+        step = std::min(share * affordable, first ? SamplePlan::kUniform - done : adapted ? 64.0 : kLeastStep);
         step = limits.whole ? std::max(1.0, std::floor(step)) : std::max(1.0, std::floor(step / kFraction)) * kFraction;
     }
     return done;
@@ -202,8 +203,9 @@ class Render {
     double reserve() const {  // s: developing and writing the picture
         const double values = static_cast<double>(camera().filmWidth()) * camera().filmHeight() * 3 *
                               static_cast<double>(layers_.filmLayers().size());
-        const double seconds = 0.03 + 9.5e-8 * values;
-        // Compression is shared by the threads.
+        // What is black compresses well.
+        const double seconds = 0.03 + (4.5e-8 + 5e-8 * filledShare(camera())) * values;
+        // Most of it is shared by the threads.
         return clock_.wall() ? seconds * (0.2 + 0.8 / run_.pool.threads()) : seconds;
     }
 
@@ -249,10 +251,10 @@ class Render {
     double see(const PhotonGather* photons, const SampleLimits& limits, double weight) {
         const auto integrator = method_.make({scene_, camera(), layers_, selected_, photons, run_.seed});
         const double done = takeSamples(*integrator, limits, run_, result_.interrupted);
-        std::vector<RgbImage> pictures;
-        pictures.reserve(layers_.filmLayers().size());
-        const int count = static_cast<int>(layers_.filmLayers().size());
-        for (int i = 0; i < count; ++i) pictures.push_back(integrator->develop(i, done));
+        const PhaseTimer timer(run_, "develop");
+        std::vector<RgbImage> pictures(layers_.filmLayers().size());
+        run_.pool.forEach(pictures.size(),
+                          [&](size_t i) { pictures[i] = integrator->develop(static_cast<int>(i), done); });
         mean_.add(pictures, weight);
         if (const auto error = integrator->error(done)) mean_.addError(*error, weight);
         result_.samples += done;

@@ -78,23 +78,23 @@ void SamplePlan::adapt(const std::vector<SampleStatistics>& statistics) {
     for (float& rate : rates_) rate = std::max(kLeastRate, rate + left);
 }
 
-// In [0, 1): pixels up to any share of the whole are evenly spread. Bayer's ordered dither: of two bits for each power
-// of two in x and y, those of the least one weigh most.
-double SamplePlan::orderOf(size_t pixel) const {
+// Whether the pixel is in a share of all that is evenly spread over the picture. Bayer's ordered dither: of two bits
+// for each power of two in x and y, those of the least one weigh most in the order of pixels.
+bool SamplePlan::isAmong(double share, size_t pixel) const {
     const auto width = static_cast<size_t>(width_);
     const size_t y = pixel / width, odd = (pixel % width) ^ y;
     double order = 0, weight = 1;
-    for (size_t bit = 0; ((odd | y) >> bit) > 0; ++bit) {
+    for (size_t bit = 0; order < share && order + weight > share; ++bit) {
         weight /= 4;
         order += weight * static_cast<double>(2 * (odd >> bit & 1) + (y >> bit & 1));
     }
-    return order;
+    return order < share;
 }
 
 uint64_t SamplePlan::count(size_t pixel, double samples) const {
     if (samples <= kUniform || rates_.empty()) {
         const double whole = std::floor(samples);
-        return static_cast<uint64_t>(whole) + (orderOf(pixel) < samples - whole ? 1 : 0);
+        return static_cast<uint64_t>(whole) + (isAmong(samples - whole, pixel) ? 1 : 0);
     }
     const double u = static_cast<double>(mix64(pixel) >> 40) * 0x1p-24;
     const double n = kUniform + static_cast<double>(rates_[pixel]) * (samples - kUniform);

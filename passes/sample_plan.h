@@ -58,7 +58,7 @@ class SamplePlan {
     uint64_t count(size_t pixel, double samples) const;
 
   private:
-    double orderOf(size_t pixel) const;
+    bool isAmong(double share, size_t pixel) const;
     std::vector<float> noiseAround(const std::vector<SampleStatistics>& statistics) const;
 
     int width_, height_;
