@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
 #include "base/hash.h"
@@ -31,6 +32,7 @@ struct SampleLimits {
     double reserve = 0;           // s, kept for what comes after
     std::optional<double> error;  // of the estimated relMSE
     bool whole = false;           // every pixel gets the same number
+    double taken = 0;             // samples that the integrator has had already
 };
 
 // Of the picture as far as it has come.
@@ -63,7 +65,8 @@ double takeSamples(Integrator& integrator, const SampleLimits& limits, RunContex
     constexpr double kLastSamples = 2, kSure = 0.95;
     const PhaseTimer timer(run, "camera");
     const auto begin = static_cast<double>(limits.begin);
-    double done = 0, step = limits.clock && !limits.whole ? kFraction : 1;
+    double done = limits.taken, step = 1;
+    if (limits.clock && !limits.whole) step = done < SamplePlan::kUniform ? kFraction : kLeastStep;
     const double start = limits.clock ? limits.clock->used() : 0;
     double usedBefore = 0;
     while (!limits.count || done < *limits.count) {
@@ -247,9 +250,15 @@ class Render {
         return g;
     }
 
+    std::unique_ptr<Integrator> makeIntegrator(const PhotonGather* photons) const {
+        return method_.make({scene_, camera(), layers_, selected_, photons, run_.seed});
+    }
+
     // The camera pass, and its picture added to the mean; returns the samples taken.
-    double see(const PhotonGather* photons, const SampleLimits& limits, double weight) {
-        const auto integrator = method_.make({scene_, camera(), layers_, selected_, photons, run_.seed});
+    double see(const PhotonGather* photons, SampleLimits limits, double weight) {
+        auto [integrator, taken] = std::exchange(begun_, {});
+        if (!integrator) integrator = makeIntegrator(photons);
+        limits.taken = taken;
         const double done = takeSamples(*integrator, limits, run_, result_.interrupted);
         const PhaseTimer timer(run_, "develop");
         std::vector<RgbImage> pictures(layers_.filmLayers().size());
@@ -275,7 +284,8 @@ class Render {
         if (!noCaustics_.empty()) run_.warn(noCaustics_);
     }
 
-    // As many photons as bring their part of the first picture's error down to a share of the limit.
+    // As many photons as bring their part of the first picture's error down to a share of the limit; that picture is
+    // begun.
     void emitForError(double limit);
 
     void progressivePasses();
@@ -294,6 +304,10 @@ class Render {
     std::string noCaustics_;
     PhotonMap map_;
     std::optional<PhotonGather> gather_;
+    struct Begun {
+        std::unique_ptr<Integrator> integrator;
+        double samples = 0;
+    } begun_;  // of the picture that is next
     PictureMean mean_;
     RenderResult result_;
 };
@@ -307,7 +321,8 @@ void Render::emitForError(double limit) {
     EmitSettings emit = emitSettings();
     for (bool first = true;; first = false) {
         const double start = clock_.used();
-        SampleLimits limits{0, SamplePlan::kUniform, {}, 0, {}};
+        SampleLimits limits;
+        limits.count = std::min<double>(SamplePlan::kUniform, samples_.value_or(SamplePlan::kUniform));
         if (first && clock_.limited()) {
             map_ = mapByTime(scene_, emit, clock_, {emissionSeconds(), kDefaultPhotons}, run_);
             limits.clock = clock_.slice(0.5 * clock_.left());
@@ -315,9 +330,9 @@ void Render::emitForError(double limit) {
             map_ = emitPhotons(scene_, emit, run_);
         }
         gather_.emplace(gatherInput(map_), gatherSettings(), run_);
-        const auto pilot = method_.make({scene_, camera(), layers_, selected_, &*gather_, run_.seed});
-        const double samples = takeSamples(*pilot, limits, run_, result_.interrupted);
-        const auto error = relativeError(*pilot, samples);
+        begun_.integrator = makeIntegrator(&*gather_);
+        begun_.samples = takeSamples(*begun_.integrator, limits, run_, result_.interrupted);
+        const auto error = relativeError(*begun_.integrator, begun_.samples);
         if (!error || result_.interrupted) return;
         const double photons = error->photons;
         const auto paths = static_cast<double>(map_.header.emittedPaths());
