@@ -38,17 +38,7 @@ class PilotIrradiance {
     PhotonTree tree_;
 };
 
-}  // namespace
-
-std::vector<LightPaths> tracePilot(LightTracerInput input, uint64_t paths, ThreadPool& pool) {
-    input.stage = Stage::EmissionPilot;
-    std::vector<LightPaths> results(paths / kPathsPerTask);
-    pool.forEach(results.size(), [&](size_t i) {
-        results[i] = traceLightPaths(input, pathsInOrder(i * kPathsPerTask, kPathsPerTask));
-    });
-    return results;
-}
-
+// By the pilot's paths, in parts.
 Dispersion dispersionOf(const std::vector<LightPaths>& pilot, PhotonClass c, ThreadPool& pool) {
     constexpr size_t kParts = 16;
     std::vector<std::vector<PackedPhoton>> parts(kParts);
@@ -58,6 +48,17 @@ Dispersion dispersionOf(const std::vector<LightPaths>& pilot, PhotonClass c, Thr
         part.insert(part.end(), photons.begin(), photons.end());
     }
     return measureDispersion(parts, pool);
+}
+
+}  // namespace
+
+std::vector<LightPaths> tracePilot(LightTracerInput input, uint64_t paths, ThreadPool& pool) {
+    input.stage = Stage::EmissionPilot;
+    std::vector<LightPaths> results(paths / kPathsPerTask);
+    pool.forEach(results.size(), [&](size_t i) {
+        results[i] = traceLightPaths(input, pathsInOrder(i * kPathsPerTask, kPathsPerTask));
+    });
+    return results;
 }
 
 std::vector<AimTrial> tryAims(LightTracerInput input, ThreadPool& pool) {

@@ -10,9 +10,6 @@ namespace lsde {
 // The first `paths` light paths of the pilot's stage, a multiple of 512, in chunks.
 std::vector<LightPaths> tracePilot(LightTracerInput input, uint64_t paths, ThreadPool& pool);
 
-// By the pilot's paths, in parts.
-Dispersion dispersionOf(const std::vector<LightPaths>& pilot, PhotonClass c, ThreadPool& pool);
-
 // Where within the parts that it aims at a light's paths are worth most: a path's worth is the power of the photons
 // that it leaves, each over the cube root of the irradiance where it lands. Where light is concentrated there are
 // photons enough; that they thin out there gives the dim surroundings more.

@@ -27,11 +27,12 @@ struct SourcedMap {
 // A map of a number of light paths that is known beforehand. Throws Error if the file's scene is another.
 SourcedMap mapByCount(const Scene& scene, const MapRequest& request, RunContext& run);
 
-// What a map by time may take.
 struct MapLimits {
-    double seconds;  // of emission and tree together, by the clock
+    double seconds;  // by the clock
     uint64_t paths = std::numeric_limits<uint64_t>::max();
 };
+// A map for what may be used of time, for the pilot, emission and tree together, and of light paths; emit.photons is
+// not looked at.
 PhotonMap mapByTime(const Scene& scene, const EmitSettings& emit, const Clock& clock, MapLimits limits,
                     RunContext& run);
 

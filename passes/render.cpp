@@ -156,9 +156,11 @@ class Render {
             mean_ = {};
             result_.samples = 0;
             result_.notFinite = 0;
-            SampleLimits limits{0, samples_, {}, reserve(), settings_.errorLimit};
-            if (clock_.limited())
+            SampleLimits limits{0, samples_, {}, 0, settings_.errorLimit};
+            if (clock_.limited()) {
                 limits.clock = clock_.slice(clock_.left() / static_cast<double>(cameras_.size() - frame_));
+                limits.reserve = reserve();
+            }
             see(gather_ ? &*gather_ : nullptr, limits, 1);
             onPicture(frame_, finished());
         }
@@ -324,7 +326,7 @@ void Render::emitForError(double limit) {
         SampleLimits limits;
         limits.count = std::min<double>(SamplePlan::kUniform, samples_.value_or(SamplePlan::kUniform));
         if (first && clock_.limited()) {
-            map_ = mapByTime(scene_, emit, clock_, {emissionSeconds(), kDefaultPhotons}, run_);
+            map_ = mapByTime(scene_, emit, clock_, {emissionSeconds(), emit.photons}, run_);
             limits.clock = clock_.slice(0.5 * clock_.left());
         } else {
             map_ = emitPhotons(scene_, emit, run_);

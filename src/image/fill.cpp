@@ -39,7 +39,7 @@ void fillUnseen(RgbImage& image, std::span<const double> samples) {
     int reach = 1;
     while (square(static_cast<double>(reach)) * static_cast<double>(seen) < static_cast<double>(samples.size()))
         reach *= 2;
-    for (auto unseen = static_cast<size_t>(samples.size()) - static_cast<size_t>(seen); unseen > 0; reach *= 2) {
+    for (auto unseen = samples.size() - static_cast<size_t>(seen); unseen > 0; reach *= 2) {
         std::vector<Vec4> known(samples.size(), Vec4(0));
         for (size_t i = 0; i < samples.size(); ++i)
             if (samples[i] > 0) known[i] = Vec4(image.pixels[i], 1);
