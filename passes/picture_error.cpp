@@ -33,9 +33,10 @@ class Convergence {
         sums.before += weight * static_cast<double>(varianceByParts(s.earlier, first, s.earliest, first / 2));
         ++sums.pixels;
     }
-    // Of the variance that parts show, if samples were independent.
+    // Of the variance that parts show, if samples were independent. What four converge by, fewer are taken to.
     float factor(double count) const {
         constexpr size_t kLeastPixels = 64;
+        count = std::max(count, 4.0);
         const auto sums = byCount_.find(static_cast<uint64_t>(count));
         if (sums == byCount_.end() || sums->second.pixels < kLeastPixels || !(sums->second.before > 0)) return 1;
         const double doublings = std::log2(count / static_cast<double>(firstPart(count)));
@@ -53,17 +54,21 @@ class Convergence {
 
 }  // namespace
 
-PictureError pictureError(std::span<const SampleStatistics> statistics, std::span<const double> counts) {
+PictureError pictureError(const std::vector<SampleStatistics>& statistics, std::span<const double> counts, int width) {
+    const std::vector<float> ofOneSample =
+        varianceOfOneSample(statistics, width, static_cast<int>(statistics.size()) / width);
     PictureError error;
     Convergence convergence;
     for (size_t i = 0; i < statistics.size(); ++i) {
         const SampleStatistics& s = statistics[i];
         const auto n = static_cast<float>(counts[i]);
-        error.camera.push_back(counts[i] > 1 ? varianceByParts(s.all, n, s.earlier, firstPart(counts[i])) : 0);
+        error.camera.push_back(counts[i] > 1 ? varianceByParts(s.all, n, s.earlier, firstPart(counts[i]))
+                                             : ofOneSample[i]);
         error.photons.push_back(square(s.photons / n));
         convergence.add(s, counts[i], error.camera.back());
     }
-    for (size_t i = 0; i < statistics.size(); ++i) error.camera[i] *= convergence.factor(counts[i]);
+    for (size_t i = 0; i < statistics.size(); ++i)
+        if (counts[i] > 1) error.camera[i] *= convergence.factor(counts[i]);
     return error;
 }
 

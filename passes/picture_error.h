@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "image/image.h"
-#include "passes/sample_plan.h"
+#include "passes/pixel_noise.h"
 
 namespace lsde {
 
@@ -26,7 +26,7 @@ struct PictureError {
     std::vector<float> standardErrors() const;
 };
 
-// counts: samples of each pixel. With one sample nothing is known of a pixel's own noise.
-PictureError pictureError(std::span<const SampleStatistics> statistics, std::span<const double> counts);
+// counts: samples of each pixel, at least one; statistics: row by row. Of a pixel that has one its neighbours tell.
+PictureError pictureError(const std::vector<SampleStatistics>& statistics, std::span<const double> counts, int width);
 
 }  // namespace lsde

@@ -11,6 +11,7 @@
 #include "passes/explain.h"
 #include "passes/map_source.h"
 #include "passes/picture.h"
+#include "passes/sample_plan.h"
 #include "passes/scene_source.h"
 #include "scene/creases.h"
 
@@ -44,7 +45,7 @@ std::optional<PictureError::Relative> relativeError(const Integrator& integrator
 // Samples after `done` that an error of the camera's part would take to come down to what the photons leave of the
 // limit; 0: it is there, or the photons alone exceed it and samples cannot help.
 double samplesForError(const Integrator& integrator, double done, double limit) {
-    constexpr double kLeast = SamplePlan::kUniform + 2;  // fewer say too little of the noise
+    constexpr double kLeast = SamplePlan::kUniform + 1;  // fewer say too little of the noise
     constexpr double kSmallPart = 0.1;
     if (done < kLeast) return kLeast - done;
     const PictureError::Relative error = relativeError(integrator, done).value();

@@ -1,7 +1,6 @@
 #include "passes/sample_plan.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <numeric>
@@ -13,52 +12,15 @@ namespace lsde {
 namespace {
 
 constexpr float kLeastRate = 0.125F, kMostRate = 16;
-// Pixels up to this far away say what a pixel's noise is.
-constexpr int kReach = 3;
+// By what power of n the variance of n of Sobol's points falls, roughly, where an edge or a gradient crosses the pixel.
+constexpr float kConvergence = 1.35F;
 
 }  // namespace
 
-// Standard error of each pixel's mean, as its neighbours show it, relative to the brightness.
-std::vector<float> SamplePlan::noiseAround(const std::vector<SampleStatistics>& statistics) const {
-    const auto n = static_cast<double>(kUniform);
-    double total = 0;
-    for (const SampleStatistics& s : statistics) total += (s.sum[0] + s.sum[1]) / n;
-    const double mean = total / static_cast<double>(statistics.size());
-    std::vector<float> variance(statistics.size());
-    for (size_t i = 0; i < variance.size(); ++i) {
-        const auto& [first, second] = statistics[i].sum;
-        variance[i] =
-            static_cast<float>(square((first - second) / n) / (square((first + second) / n) + mean * mean + 1e-30));
-    }
-    // The sum over the square around each pixel, along the rows and then along the columns.
-    const auto at = [this](int x, int y) {
-        return static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x);
-    };
-    const auto around = [](int centre, int size) {
-        return std::array{std::max(0, centre - kReach), std::min(size - 1, centre + kReach)};
-    };
-    std::vector<float> along(variance.size()), noise(variance.size());
-    for (int y = 0; y < height_; ++y)
-        for (int x = 0; x < width_; ++x) {
-            const auto [first, last] = around(x, width_);
-            for (int u = first; u <= last; ++u) along[at(x, y)] += variance[at(u, y)];
-        }
-    for (int y = 0; y < height_; ++y) {
-        const auto [top, bottom] = around(y, height_);
-        for (int x = 0; x < width_; ++x) {
-            float sum = 0;
-            for (int v = top; v <= bottom; ++v) sum += v == y ? along[at(x, v)] - variance[at(x, v)] : along[at(x, v)];
-            const auto [first, last] = around(x, width_);
-            const int count = (last - first + 1) * (bottom - top + 1) - 1;
-            if (count > 0) noise[at(x, y)] = std::sqrt(std::max(0.0F, sum) / static_cast<float>(count));
-        }
-    }
-    return noise;
-}
-
 void SamplePlan::adapt(const std::vector<SampleStatistics>& statistics) {
-    // The sum of sigma^2 / n is least, at a given number of samples, when n goes by sigma.
-    const std::vector<float> wanted = noiseAround(statistics);
+    // The sum of sigma^2 / n^a is least, at a given number of samples, when n goes by (sigma^2)^(1 / (1 + a)).
+    std::vector<float> wanted = relativeVariance(statistics, width_, height_);
+    for (float& w : wanted) w = std::pow(w, 1 / (1 + kConvergence));
     const double sum = std::accumulate(wanted.begin(), wanted.end(), 0.0);
     if (!(sum > 0)) return;
     const auto pixels = static_cast<double>(wanted.size());

@@ -1,35 +1,12 @@
-// How many samples each pixel gets: the same number at first, then more where the picture is noisier.
+// How many samples each pixel gets: one at first, then more where the picture is noisier.
 #pragma once
 
-#include <bit>
 #include <cstdint>
 #include <vector>
 
-#include "base/math.h"
+#include "passes/pixel_noise.h"
 
 namespace lsde {
-
-// What is known of a pixel's noise. Samples are seen in two halves, each as evenly distributed as the whole: their
-// difference shows the noise that is left, where the spread of single samples does not.
-struct SampleStatistics {
-    // Few: what every pixel must have is lost to those that need more.
-    static constexpr uint64_t kSamples = 2;
-
-    float sum[2] = {0, 0};  // luminance of the first samples
-    // Sums over all samples, over those before the last power of two, and before the one before.
-    Rgb all{0}, earlier{0}, earliest{0};
-    float photons = 0;  // sum of the standard deviations that single samples have by their photons
-
-    void add(uint64_t sample, Rgb value, float photonDeviation) {
-        if (sample < kSamples) sum[sample / (kSamples / 2)] += luminance(value);
-        if (std::has_single_bit(sample)) {
-            earliest = earlier;
-            earlier = all;
-        }
-        all += value;
-        photons += photonDeviation;
-    }
-};
 
 // The mean number of samples a pixel, S, says how many each has: a function of S and of the first kUniform samples
 // alone, so that a picture stopped by time can be made again by count. A pixel's share depends on the noise of its
@@ -40,11 +17,11 @@ struct SampleStatistics {
 // is one for each square of two by two.
 class SamplePlan {
   public:
-    static constexpr uint64_t kUniform = SampleStatistics::kSamples;
+    static constexpr uint64_t kUniform = 1;
 
     SamplePlan(int width, int height) : width_(width), height_(height) {}
 
-    // Gives out what comes after the first samples, by relative variance: sigma^2 / (mean^2 + (mean of the picture)^2).
+    // Gives out what comes after the first samples, by relativeVariance.
     void adapt(const std::vector<SampleStatistics>& statistics);
 
     // Samples of the pixel for each one of the mean, after the first.
@@ -59,7 +36,6 @@ class SamplePlan {
 
   private:
     bool isAmong(double share, size_t pixel) const;
-    std::vector<float> noiseAround(const std::vector<SampleStatistics>& statistics) const;
 
     int width_, height_;
     std::vector<float> rates_;           // empty: 1

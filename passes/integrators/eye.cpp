@@ -4,6 +4,7 @@
 #include "passes/eye_tracer.h"
 #include "passes/integrators/registry.h"
 #include "passes/light_effort.h"
+#include "passes/sample_plan.h"
 
 namespace lsde {
 
@@ -39,7 +40,7 @@ class EyeIntegrator : public Integrator {
     std::optional<PictureError> error(double samples) const override {
         // What a pixel that nobody saw would show is not known.
         if (samples < 1) return std::nullopt;
-        return pictureError(statistics_, counts(samples));
+        return pictureError(statistics_, counts(samples), film_.width());
     }
     uint64_t notFinite() const override { return notFinite_; }
 

@@ -43,23 +43,28 @@ TEST_CASE("two parts of a pixel's samples tell the variance of its mean, whateve
         for (int i = 0; i < 20'000; ++i) {
             const std::vector<SampleStatistics> one{tossed(count, random)};
             const std::vector<double> counts{static_cast<double>(count)};
-            variance.add(pictureError(one, counts).camera[0]);
+            variance.add(pictureError(one, counts, 1).camera[0]);
         }
         CHECK(variance.agrees(1.0 / static_cast<double>(count)));
     }
 }
 
-TEST_CASE("of one sample nothing is known") {
+TEST_CASE("where pixels have one sample, others around them tell the variance") {
+    constexpr int kSide = 64;
     test::Random random(1);
-    const std::vector<SampleStatistics> one{tossed(1, random)};
-    CHECK(pictureError(one, std::vector<double>{1.0}).camera[0] == 0);
+    std::vector<SampleStatistics> ones;
+    for (int i = 0; i < kSide * kSide; ++i) ones.push_back(tossed(1, random));
+    double sum = 0;
+    for (const float v : pictureError(ones, std::vector<double>(ones.size(), 1.0), kSide).camera)
+        sum += static_cast<double>(v);
+    CHECK(sum / (kSide * kSide) == doctest::Approx(1).epsilon(0.25));
 }
 
 TEST_CASE("what photons leave of error is shared by all samples of a pixel") {
     test::Random random(1);
     const std::vector<SampleStatistics> few{tossed(4, random, 0.5F)}, many{tossed(64, random, 0.5F)};
-    CHECK(pictureError(few, std::vector<double>{4.0}).photons[0] == doctest::Approx(0.25));
-    CHECK(pictureError(many, std::vector<double>{64.0}).photons[0] == doctest::Approx(0.25));
+    CHECK(pictureError(few, std::vector<double>{4.0}, 1).photons[0] == doctest::Approx(0.25));
+    CHECK(pictureError(many, std::vector<double>{64.0}, 1).photons[0] == doctest::Approx(0.25));
 }
 
 TEST_CASE("relative errors are those of relMSE, and standard errors in the units of the picture") {
