@@ -108,6 +108,7 @@ IrradianceCache::IrradianceCache(const PhotonSource& source, const IrradianceRul
         level.rule.mostCount = std::min(level.rule.mostCount, length.mostCount);
         const size_t slots = kSides * runs;
         level.offsets = {slots, source.place};
+        level.clearances = {slots, source.place};
         level.states = {slots, source.place};
         level.bandwidths = {slots, source.place};
         level.irradiance = {slots * (source.groupCount + 1), source.place};
@@ -207,16 +208,29 @@ float IrradianceCache::distance(const Record& record, Vec3 p) const {
     return record.bandwidth.distance(p - photons_.position(record.photon));
 }
 
-bool IrradianceCache::sameSurface(const DensityQuery& query, uint32_t photon, BandwidthScratch& scratch) const {
-    const DensityQuery there = queryAt(source_, photon);
+float IrradianceCache::clearanceOf(Level& level, const Place& place) const {
+    const std::atomic_ref<float> kept(level.clearances[place.slot]);
+    float clearance = kept.load(std::memory_order_relaxed);
+    if (clearance == 0) {  // not known yet
+        clearance = source_.extent.clearance(photons_.position(place.photon));
+        kept.store(clearance, std::memory_order_relaxed);
+    }
+    return clearance;
+}
+
+bool IrradianceCache::sameSurface(const DensityQuery& query, Level& level, const Place& place) const {
+    const DensityQuery there = queryAt(source_, place.photon);
     if (there.medium != query.medium || glm::dot(there.sideNormal, query.sideNormal) < kSameDirection) return false;
     const Vec3 away = there.point.position - query.point.position;
     const float distance = glm::length(away), height = std::fabs(glm::dot(away, query.point.ng));
     if (height > kPlaneThickness * source_.maxRadius) return false;
     // A surface that turns by no more than that rises no more steeply; what does is another, before or behind it.
     if (height > kSteepest * distance + surfaceEpsilon(query.point.position, 0)) return false;
-    source_.extent.around(query.point.position, query.point.ng, distance, scratch.surface);
-    return scratch.surface.whole() || !scratch.surface.hides(there.point.position);
+    // What lies between them is at most that far from the photon. Records know how far the nearest crease is, so that
+    // few are looked for.
+    constexpr float kBeside = 1.01F * (1 + kPlaneThickness);
+    if (kBeside * distance < clearanceOf(level, place)) return true;
+    return !source_.extent.separates(query.point.position, query.point.ng, there.point.position);
 }
 
 std::optional<IrradianceCache::Place> IrradianceCache::placeOf(Level& level, size_t run, Vec3 sideNormal) const {
@@ -248,7 +262,7 @@ bool IrradianceCache::answers(Level& level, size_t run, const DensityQuery& quer
                               std::vector<Rgb>& spare, BandwidthScratch& scratch) {
     if (run * level.photonsPerRecord >= photons_.count) return false;
     const std::optional<Place> place = placeOf(level, run, query.sideNormal);
-    if (!place || !sameSurface(query, place->photon, scratch)) return false;
+    if (!place || !sameSurface(query, level, *place)) return false;
     record.photon = place->photon;
     record.photonsPerRecord = level.photonsPerRecord;
     recordOf(level, place->slot, record, spare, scratch);

@@ -58,6 +58,7 @@ class IrradianceCache {
         uint32_t photonsPerRecord = 0;
         BandwidthRule rule;
         ScratchArray<uint16_t> offsets;  // of the record's photon in its run, coded (placeOf)
+        ScratchArray<float> clearances;  // m, of the record's photon; 0: not known yet
         ScratchArray<uint8_t> states;
         ScratchArray<Bandwidth> bandwidths;
         ScratchArray<Rgb> irradiance;  // of slot i and group g: [i * (groups + 1) + g]
@@ -72,11 +73,13 @@ class IrradianceCache {
     bool tells(const Record& record, Vec3 p) const;
     // False: none of the query's surface is near p.
     bool nearest(const DensityQuery& query, Vec3 p, Record& record, BandwidthScratch& scratch);
-    bool sameSurface(const DensityQuery& query, uint32_t photon, BandwidthScratch& scratch) const;
     struct Place {
         uint32_t photon = 0;
         size_t slot = 0;
     };
+    bool sameSurface(const DensityQuery& query, Level& level, const Place& place) const;
+    // In m, from the place's photon to the nearest crease.
+    float clearanceOf(Level& level, const Place& place) const;
     // Where the run has its record for that side; nowhere, if none of its photons landed there.
     std::optional<Place> placeOf(Level& level, size_t run, Vec3 sideNormal) const;
     // Into `spare` where another thread is just making it.

@@ -119,6 +119,16 @@ std::array<float, SurfaceExtent::kLanes> SurfaceExtent::Lanes::distancesSquared(
     return out;
 }
 
+bool SurfaceExtent::Lanes::anyCrosses(Vec3 p, Vec3 normal) const {
+    int any = 0;
+    for (size_t i = 0; i < kLanes; ++i) {
+        const float sideA = (ax[i] - p.x) * normal.x + (ay[i] - p.y) * normal.y + (az[i] - p.z) * normal.z;
+        const float sideB = sideA + dx[i] * normal.x + dy[i] * normal.y + dz[i] * normal.z;
+        any |= static_cast<int>((sideA > 0) != (sideB > 0));
+    }
+    return any != 0;
+}
+
 void SurfaceExtent::build(uint32_t begin, uint32_t end) {
     const size_t at = nodes_.size();
     nodes_.push_back({{}, begin, end, 0});
@@ -168,7 +178,8 @@ void SurfaceExtent::around(Vec3 centre, Vec3 normal, float radius, SurfaceAround
     out.centre_ = centre;
     // In the plane the crease is nearer than the radius, and this far off it; and more than rounding.
     const float reach = square(radius) * (1 + square(kPlaneThickness)) * 1.001F;
-    std::array<uint32_t, kDeepest> waiting{};
+    std::array<uint32_t, kDeepest> waiting;
+    waiting[0] = 0;
     size_t count = 1;
     while (count > 0) {
         const uint32_t at = waiting[--count];
@@ -191,6 +202,65 @@ void SurfaceExtent::around(Vec3 centre, Vec3 normal, float radius, SurfaceAround
             });
         }
     }
+}
+
+bool SurfaceExtent::separates(Vec3 centre, Vec3 normal, Vec3 p) const {
+    if (nodes_.empty()) return false;
+    const Vec3 toP = p - centre, inPlane = toP - glm::dot(toP, normal) * normal;
+    const float length = glm::length(inPlane), thickness = kPlaneThickness * glm::length(toP);
+    if (!(length > 0)) return false;
+    const Vec3 along = inPlane / length, across = glm::cross(normal, along);
+    Bounds path;
+    path.grow(centre);
+    path.grow(centre + inPlane);
+    const Vec3 beside = 1.001F * thickness * glm::abs(normal) + Vec3(1e-6F * length);
+    path = {path.lo - beside, path.hi + beside};
+    std::array<uint32_t, kDeepest> waiting;
+    waiting[0] = 0;
+    size_t count = 1;
+    while (count > 0) {
+        const uint32_t at = waiting[--count];
+        const Node& node = nodes_[at];
+        if (!node.bounds.overlaps(path)) continue;
+        if (!node.leaf) {
+            waiting[count++] = node.next;
+            waiting[count++] = at + 1;
+            continue;
+        }
+        if (!lanes_[node.next].anyCrosses(centre, across)) continue;
+        for (uint32_t i = node.begin; i < node.end; ++i) {
+            const auto& [a, b] = creases_[i].segment;
+            const float sideA = glm::dot(a - centre, across), sideB = glm::dot(b - centre, across);
+            if ((sideA > 0) == (sideB > 0)) continue;
+            const Vec3 where = a + sideA / (sideA - sideB) * (b - a) - centre;
+            const float distance = glm::dot(where, along);
+            if (distance > 0 && distance < length && std::fabs(glm::dot(where, normal)) <= thickness) return true;
+        }
+    }
+    return false;
+}
+
+float SurfaceExtent::clearance(Vec3 p) const {
+    float nearest = kInfinity;
+    if (nodes_.empty()) return nearest;
+    std::array<uint32_t, kDeepest> waiting;
+    waiting[0] = 0;
+    size_t count = 1;
+    while (count > 0) {
+        const uint32_t at = waiting[--count];
+        const Node& node = nodes_[at];
+        if (!(distanceSquared(node.bounds, p) < nearest)) continue;
+        if (node.leaf) {
+            const auto distances = lanes_[node.next].distancesSquared(p);
+            for (uint32_t i = 0; i < node.end - node.begin; ++i) nearest = std::min(nearest, distances[i]);
+            continue;
+        }
+        const bool firstNearer =
+            distanceSquared(nodes_[at + 1].bounds, p) < distanceSquared(nodes_[node.next].bounds, p);
+        waiting[count++] = firstNearer ? node.next : at + 1;
+        waiting[count++] = firstNearer ? at + 1 : node.next;
+    }
+    return std::sqrt(nearest);
 }
 
 float SurfaceAround::share(float radius) const {

@@ -53,6 +53,10 @@ class SurfaceExtent {
 
     // normal: of the tangent plane, unit. The result is overwritten, its memory used again.
     void around(Vec3 centre, Vec3 normal, float radius, SurfaceAround& out) const;
+    // Whether a crease lies between the points: what around() as far as p would say that it hides.
+    bool separates(Vec3 centre, Vec3 normal, Vec3 p) const;
+    // In m, from p to the nearest crease; infinite if there is none.
+    float clearance(Vec3 p) const;
 
   private:
     struct Crease {
@@ -67,6 +71,8 @@ class SurfaceExtent {
         std::array<float, kLanes> inverse{};                           // 1 / d^2
         explicit Lanes(std::span<const Crease> creases);
         std::array<float, kLanes> distancesSquared(Vec3 p) const;
+        // Whether one has its ends on different sides of the plane through p across `normal`.
+        bool anyCrosses(Vec3 p, Vec3 normal) const;
     };
     // A tree of boxes over the creases: a node's first child follows it, the second is at `next`; a leaf's lanes are.
     struct Node {

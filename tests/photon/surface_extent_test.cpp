@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+
 #include "photon/kernel.h"
 #include "support/random.h"
 
@@ -32,6 +34,18 @@ double massBeside(double distance) {
                 mass += 4.0 / kSteps / kSteps * 2 / 3.14159265358979 * (1 - x * x - y * y);
         }
     return mass;
+}
+
+Vec3 within(float size, test::Random& random) { return size * (random.inCube() - 0.5F); }
+
+// Short ones and some long ones.
+std::vector<Segment> thousands(test::Random& random) {
+    std::vector<Segment> creases;
+    for (int i = 0; i < 3000; ++i) {
+        const Vec3 a = within(10, random);
+        creases.push_back({a, a + within(i % 10 == 0 ? 5.0F : 0.3F, random)});
+    }
+    return creases;
 }
 
 }  // namespace
@@ -85,18 +99,11 @@ TEST_CASE("a crease is near what lies within the distance of it") {
 
 TEST_CASE("among thousands of creases those that cut the disc are found, and they alone") {
     test::Random random(21);
-    const auto at = [&](float scale) {
-        return scale * (Vec3(random.uniform(), random.uniform(), random.uniform()) - 0.5F);
-    };
-    std::vector<Segment> creases;
-    for (int i = 0; i < 3000; ++i) {
-        const Vec3 a = at(10);
-        creases.push_back({a, a + at(i % 10 == 0 ? 5.0F : 0.3F)});
-    }
+    const std::vector<Segment> creases = thousands(random);
     const SurfaceExtent extent(creases);
     int cut = 0;
     for (int i = 0; i < 300; ++i) {
-        const Vec3 centre = at(12), normal = glm::normalize(at(1));
+        const Vec3 centre = within(12, random), normal = glm::normalize(within(1, random));
         const float radius = 0.05F + random.uniform();
         SurfaceAround all;
         extent.around(centre, normal, radius, all);
@@ -114,4 +121,41 @@ TEST_CASE("among thousands of creases those that cut the disc are found, and the
     }
     CHECK(cut > 50);
     CHECK(cut < 250);
+}
+
+TEST_CASE("a crease separates two points if it hides one from the other") {
+    test::Random random(22);
+    const std::vector<Segment> creases = thousands(random);
+    const SurfaceExtent extent(creases);
+    int separated = 0;
+    for (int i = 0; i < 3000; ++i) {
+        const Vec3 centre = within(9, random), normal = glm::normalize(within(1, random));
+        const Vec3 p = centre + within(2, random);
+        SurfaceAround surface;
+        extent.around(centre, normal, glm::length(p - centre), surface);
+        const bool hidden = surface.hides(p);
+        CHECK(extent.separates(centre, normal, p) == hidden);
+        separated += hidden ? 1 : 0;
+    }
+    CHECK(separated > 300);
+    CHECK(separated < 2700);
+    CHECK(!extent.separates({1, 2, 3}, {0, 0, 1}, {1, 2, 3}));
+    CHECK(!SurfaceExtent().separates({1, 2, 3}, {0, 0, 1}, {1, 3, 3}));
+}
+
+TEST_CASE("the clearance is the distance of the nearest crease") {
+    test::Random random(23);
+    const std::vector<Segment> creases = thousands(random);
+    const SurfaceExtent extent(creases);
+    for (int i = 0; i < 200; ++i) {
+        const Vec3 p = within(12, random);
+        float nearest = kInfinity;
+        for (const Segment& s : creases) {
+            const Vec3 along = s.b - s.a;
+            const float t = std::clamp(glm::dot(p - s.a, along) / glm::dot(along, along), 0.0F, 1.0F);
+            nearest = std::min(nearest, glm::length(s.a + t * along - p));
+        }
+        CHECK(extent.clearance(p) == doctest::Approx(nearest).epsilon(1e-4));
+    }
+    CHECK(SurfaceExtent().clearance({1, 2, 3}) == kInfinity);
 }
