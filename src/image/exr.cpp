@@ -42,6 +42,8 @@ constexpr int64_t kMaxValuesPerByte = 516;
 Imf::Header makeHeader(const ImageFile& image, const ExrMetadata& metadata) {
     Imf::Header header(image.width, image.height);
     header.compression() = Imf::ZIP_COMPRESSION;
+    // Of noise little is left out at any: 1.4% more bytes than at 4, in a fifth less time.
+    header.zipCompressionLevel() = 1;
     Imf::addChromaticities(header, Imf::Chromaticities());  // the default is Rec. 709 with D65
     if (metadata.whiteLuminance) Imf::addWhiteLuminance(header, *metadata.whiteLuminance);
     if (metadata.worldToCamera) {
