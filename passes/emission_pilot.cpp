@@ -115,7 +115,7 @@ PilotFindings pilotEmission(LightTracerInput input, ThreadPool& pool) {
     // Of light that met a D, the share of rays that follow what is aimed at casters: as much as escapes unaimed.
     constexpr double kLeastAimed = 0.25, kMostAimed = 0.9;
     // Rays of light that met a D, for each other ray: as its flux is to that of caustics, within bounds.
-    constexpr double kLeastRaysAfterDiffuse = 0.6, kMostRaysAfterDiffuse = 2;
+    constexpr double kLeastRaysAfterDiffuse = 0.3, kMostRaysAfterDiffuse = 2;
     constexpr uint64_t kRaysOfAimed = 4;  // where none was seen
     input.fairPower = input.sources.fairPower();
     const std::vector<LightPaths> results = tracePilot(input, kPaths, pool);
