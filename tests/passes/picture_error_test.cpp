@@ -52,8 +52,8 @@ TEST_CASE("two parts of a pixel's samples tell the variance of its mean, whateve
 TEST_CASE("where pixels have one sample, others around them tell the variance") {
     constexpr int kSide = 64;
     test::Random random(1);
-    std::vector<SampleStatistics> ones;
-    for (int i = 0; i < kSide * kSide; ++i) ones.push_back(tossed(1, random));
+    std::vector<SampleStatistics> ones(kSide * kSide);
+    for (SampleStatistics& s : ones) s = tossed(1, random);
     double sum = 0;
     for (const float v : pictureError(ones, std::vector<double>(ones.size(), 1.0), kSide).camera)
         sum += static_cast<double>(v);
