@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "passes/int_range.h"
 #include "sampling/strata.h"
 #include "transport/direct_light.h"
 
@@ -89,27 +90,16 @@ class LightTrials {
 };
 
 // Blocks of the whole picture that a crop has to do with: those of its pixels, and the ones next to them.
-struct Span {
-    int first, last;
-
-    Span(int film, int filmSize, int size)
-        : first(std::max(0, film / kBlock - 1)),
-          last(std::min((size - 1) / kBlock, (film + filmSize - 1) / kBlock + 1)) {}
-    int count() const { return last - first + 1; }
-    Span around(int block) const {
-        Span span = *this;
-        span.first = std::max(first, block - 1);
-        span.last = std::min(last, block + 1);
-        return span;
-    }
-};
+IntRange blocksOf(int film, int filmSize, int size) {
+    return {std::max(0, film / kBlock - 1), std::min((size - 1) / kBlock, (film + filmSize - 1) / kBlock + 1)};
+}
 
 }  // namespace
 
 std::vector<uint8_t> planLightSamples(const Scene& scene, const Camera& camera, const LightSampler& lights,
                                       RunContext& run) {
-    const Span columns(camera.filmX(), camera.filmWidth(), camera.width());
-    const Span rows(camera.filmY(), camera.filmHeight(), camera.height());
+    const IntRange columns = blocksOf(camera.filmX(), camera.filmWidth(), camera.width());
+    const IntRange rows = blocksOf(camera.filmY(), camera.filmHeight(), camera.height());
     const auto at = [&](int x, int y) {
         return static_cast<size_t>(y - rows.first) * static_cast<size_t>(columns.count()) +
                static_cast<size_t>(x - columns.first);
@@ -124,7 +114,7 @@ std::vector<uint8_t> planLightSamples(const Scene& scene, const Camera& camera, 
     });
     const auto samplesOf = [&](int blockX, int blockY) {
         Spread sum;
-        const Span nearColumns = columns.around(blockX), nearRows = rows.around(blockY);
+        const IntRange nearColumns = columns.around(blockX, 1), nearRows = rows.around(blockY, 1);
         for (int y = nearRows.first; y <= nearRows.last; ++y)
             for (int x = nearColumns.first; x <= nearColumns.last; ++x) sum += spread[at(x, y)];
         return sum.variance > kNoisy * sum.meanSquared ? kManyLightSamples : kFewLightSamples;

@@ -55,8 +55,9 @@ class Convergence {
 }  // namespace
 
 PictureError pictureError(const std::vector<SampleStatistics>& statistics, std::span<const double> counts, int width) {
-    const std::vector<float> ofOneSample =
-        varianceOfOneSample(statistics, width, static_cast<int>(statistics.size()) / width);
+    std::vector<float> ofOneSample;  // if a pixel has no more
+    if (std::any_of(counts.begin(), counts.end(), [](double count) { return count == 1; }))
+        ofOneSample = varianceOfOneSample(statistics, width, static_cast<int>(statistics.size()) / width);
     PictureError error;
     Convergence convergence;
     for (size_t i = 0; i < statistics.size(); ++i) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "passes/int_range.h"
+
 namespace lsde {
 
 namespace {
@@ -19,17 +21,6 @@ double meanOf(const std::vector<SampleStatistics>& statistics) {
 
 double brightness(float sample, double mean) { return square(static_cast<double>(sample)) + square(mean) + 1e-30; }
 
-// Whole numbers up to `reach` from a centre, within bounds.
-struct Reach {
-    int first, last;
-
-    Reach(int centre, int reach, int least, int most)
-        : first(std::max(least, centre - reach)), last(std::min(most, centre + reach)) {}
-    int count() const { return std::max(0, last - first + 1); }
-};
-// Those that have one on both sides.
-Reach middles(int centre, int reach, int size) { return {centre, reach, 1, size - 2}; }
-
 // The picture of first samples, and what three of them show.
 class Bends {
   public:
@@ -37,6 +28,10 @@ class Bends {
         : statistics_(statistics),
           width_(width),
           height_(height),
+          columns_{0, width - 1},
+          rows_{0, height - 1},
+          middleColumns_{1, width - 2},
+          middleRows_{1, height - 2},
           mean_(meanOf(statistics)),
           alongRows_(statistics.size()),
           alongColumns_(statistics.size()) {
@@ -52,18 +47,19 @@ class Bends {
         std::vector<float> sums(statistics_.size());  // of rows
         for (int y = 0; y < height_; ++y)
             for (int x = 0; x < width_; ++x) {
-                const Reach columns(x, reach, 0, width_ - 1);
+                const IntRange columns = columns_.around(x, reach);
                 for (int u = columns.first; u <= columns.last; ++u)
                     sums[at(x, y)] += alongRows_[at(u, y)] + alongColumns_[at(u, y)];
             }
         for (int y = 0; y < height_; ++y) {
-            const Reach rows(y, reach, 0, height_ - 1);
+            const IntRange rows = rows_.around(y, reach);
             for (int x = 0; x < width_; ++x) {
                 float sum = -withPixel(x, y);
                 for (int v = rows.first; v <= rows.last; ++v) sum += sums[at(x, v)];
-                const int count = middles(x, reach, width_).count() * rows.count() - middles(x, 1, width_).count() +
-                                  middles(y, reach, height_).count() * Reach(x, reach, 0, width_ - 1).count() -
-                                  middles(y, 1, height_).count();
+                const int along = middleColumns_.around(x, reach).count() * rows.count();
+                const int across = middleRows_.around(y, reach).count() * columns_.around(x, reach).count();
+                const int own = middleColumns_.around(x, 1).count() + middleRows_.around(y, 1).count();
+                const int count = along + across - own;
                 if (count > 0) to[at(x, y)] += share * std::max(0.0F, sum) / static_cast<float>(count);
             }
         }
@@ -82,7 +78,7 @@ class Bends {
     // What the pixel's own sample has a part in.
     float withPixel(int x, int y) const {
         float sum = 0;
-        const Reach row = middles(x, 1, width_), column = middles(y, 1, height_);
+        const IntRange row = middleColumns_.around(x, 1), column = middleRows_.around(y, 1);
         for (int u = row.first; u <= row.last; ++u) sum += alongRows_[at(u, y)];
         for (int v = column.first; v <= column.last; ++v) sum += alongColumns_[at(x, v)];
         return sum;
@@ -90,6 +86,8 @@ class Bends {
 
     const std::vector<SampleStatistics>& statistics_;
     int width_, height_;
+    IntRange columns_, rows_;
+    IntRange middleColumns_, middleRows_;  // that have one on both sides
     double mean_;
     std::vector<float> alongRows_, alongColumns_;  // by the middle one of three; 0 at the picture's edge
 };

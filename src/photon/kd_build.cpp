@@ -83,12 +83,11 @@ class Sorter {
         while (keys.size() > kFewKeys) {
             const float pivot = pivotNear(axis, keys, left);
             size_t below = moveFirst(keys, [=](const Key& key) { return key.position[axis] < pivot; });
-            if (below == 0) {  // equal ones, as on a plane across the axis
-                below = moveFirst(keys, [=](const Key& key) { return key.position[axis] == pivot; });
-                if (left < below) return cutEqual(keys.first(below), left);
-            }
+            const bool least = below == 0;  // and many may be equal, as on a plane across the axis
+            if (least) below = moveFirst(keys, [=](const Key& key) { return key.position[axis] == pivot; });
             if (left < below) {
                 keys = keys.first(below);
+                if (least) break;
             } else {
                 keys = keys.subspan(below);
                 left -= below;
@@ -99,11 +98,6 @@ class Sorter {
                              if (a.position[axis] != b.position[axis]) return a.position[axis] < b.position[axis];
                              return photonLess(a, b);
                          });
-    }
-
-    void cutEqual(std::span<Key> keys, size_t left) const {
-        std::nth_element(keys.begin(), keys.begin() + static_cast<ptrdiff_t>(left), keys.end(),
-                         [this](const Key& a, const Key& b) { return photonLess(a, b); });
     }
 
     // A coordinate of one of the keys, about a standard error beyond the one sought, on the side of the more keys: most

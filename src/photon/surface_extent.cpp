@@ -171,6 +171,24 @@ void SurfaceAround::add(Vec2 a, Vec2 b) {
     c.area[lane] = twiceArea(a, b);
 }
 
+template <typename Reaches, typename Visit>
+void SurfaceExtent::visitLeaves(const Reaches& reaches, const Visit& visit) const {
+    std::array<uint32_t, kDeepest> waiting;
+    waiting[0] = 0;
+    size_t count = nodes_.empty() ? 0 : 1;
+    while (count > 0) {
+        const uint32_t at = waiting[--count];
+        const Node& node = nodes_[at];
+        if (!reaches(node.bounds)) continue;
+        if (node.leaf) {
+            if (visit(node)) return;
+            continue;
+        }
+        waiting[count++] = node.next;
+        waiting[count++] = at + 1;
+    }
+}
+
 void SurfaceExtent::around(Vec3 centre, Vec3 normal, float radius, SurfaceAround& out) const {
     out.clear();
     if (nodes_.empty()) return;
@@ -178,22 +196,11 @@ void SurfaceExtent::around(Vec3 centre, Vec3 normal, float radius, SurfaceAround
     out.centre_ = centre;
     // In the plane the crease is nearer than the radius, and this far off it; and more than rounding.
     const float reach = square(radius) * (1 + square(kPlaneThickness)) * 1.001F;
-    std::array<uint32_t, kDeepest> waiting;
-    waiting[0] = 0;
-    size_t count = 1;
-    while (count > 0) {
-        const uint32_t at = waiting[--count];
-        const Node& node = nodes_[at];
-        if (!node.leaf) {
-            if (distanceSquared(node.bounds, centre) > reach) continue;
-            waiting[count++] = node.next;
-            waiting[count++] = at + 1;
-            continue;
-        }
-        const auto distances = lanes_[node.next].distancesSquared(centre);
-        for (uint32_t i = node.begin; i < node.end; ++i) {
+    const auto cutLeaf = [&](const Node& leaf) {
+        const auto distances = lanes_[leaf.next].distancesSquared(centre);
+        for (uint32_t i = leaf.begin; i < leaf.end; ++i) {
             const Crease& crease = creases_[i];
-            if (distances[i - node.begin] > reach ||
+            if (distances[i - leaf.begin] > reach ||
                 lengthSquared(crease.middle - centre) > square(radius + crease.halfLength))
                 continue;
             cutDisc(out.frame_, centre, crease.segment, radius, [&](Vec2 from, Vec2 to, float nearestSquared) {
@@ -201,65 +208,48 @@ void SurfaceExtent::around(Vec3 centre, Vec3 normal, float radius, SurfaceAround
                 out.nearestSquared_ = std::min(out.nearestSquared_, nearestSquared);
             });
         }
-    }
+        return false;
+    };
+    visitLeaves([&](const Bounds& bounds) { return distanceSquared(bounds, centre) <= reach; }, cutLeaf);
 }
 
 bool SurfaceExtent::separates(Vec3 centre, Vec3 normal, Vec3 p) const {
-    if (nodes_.empty()) return false;
     const Vec3 toP = p - centre, inPlane = toP - glm::dot(toP, normal) * normal;
     const float length = glm::length(inPlane), thickness = kPlaneThickness * glm::length(toP);
     if (!(length > 0)) return false;
     const Vec3 along = inPlane / length, across = glm::cross(normal, along);
+    const auto crosses = [&](const Segment& crease) {
+        const float sideA = glm::dot(crease.a - centre, across), sideB = glm::dot(crease.b - centre, across);
+        if ((sideA > 0) == (sideB > 0)) return false;
+        const Vec3 where = crease.a + sideA / (sideA - sideB) * (crease.b - crease.a) - centre;
+        const float distance = glm::dot(where, along);
+        return distance > 0 && distance < length && std::fabs(glm::dot(where, normal)) <= thickness;
+    };
     Bounds path;
     path.grow(centre);
     path.grow(centre + inPlane);
     const Vec3 beside = 1.001F * thickness * glm::abs(normal) + Vec3(1e-6F * length);
     path = {path.lo - beside, path.hi + beside};
-    std::array<uint32_t, kDeepest> waiting;
-    waiting[0] = 0;
-    size_t count = 1;
-    while (count > 0) {
-        const uint32_t at = waiting[--count];
-        const Node& node = nodes_[at];
-        if (!node.bounds.overlaps(path)) continue;
-        if (!node.leaf) {
-            waiting[count++] = node.next;
-            waiting[count++] = at + 1;
-            continue;
-        }
-        if (!lanes_[node.next].anyCrosses(centre, across)) continue;
-        for (uint32_t i = node.begin; i < node.end; ++i) {
-            const auto& [a, b] = creases_[i].segment;
-            const float sideA = glm::dot(a - centre, across), sideB = glm::dot(b - centre, across);
-            if ((sideA > 0) == (sideB > 0)) continue;
-            const Vec3 where = a + sideA / (sideA - sideB) * (b - a) - centre;
-            const float distance = glm::dot(where, along);
-            if (distance > 0 && distance < length && std::fabs(glm::dot(where, normal)) <= thickness) return true;
-        }
-    }
-    return false;
+    bool found = false;
+    visitLeaves([&](const Bounds& bounds) { return bounds.overlaps(path); },
+                [&](const Node& leaf) {
+                    if (!lanes_[leaf.next].anyCrosses(centre, across)) return false;
+                    const auto creases = std::span(creases_).subspan(leaf.begin, leaf.end - leaf.begin);
+                    found = std::any_of(creases.begin(), creases.end(),
+                                        [&](const Crease& crease) { return crosses(crease.segment); });
+                    return found;
+                });
+    return found;
 }
 
 float SurfaceExtent::clearance(Vec3 p) const {
     float nearest = kInfinity;
-    if (nodes_.empty()) return nearest;
-    std::array<uint32_t, kDeepest> waiting;
-    waiting[0] = 0;
-    size_t count = 1;
-    while (count > 0) {
-        const uint32_t at = waiting[--count];
-        const Node& node = nodes_[at];
-        if (!(distanceSquared(node.bounds, p) < nearest)) continue;
-        if (node.leaf) {
-            const auto distances = lanes_[node.next].distancesSquared(p);
-            for (uint32_t i = 0; i < node.end - node.begin; ++i) nearest = std::min(nearest, distances[i]);
-            continue;
-        }
-        const bool firstNearer =
-            distanceSquared(nodes_[at + 1].bounds, p) < distanceSquared(nodes_[node.next].bounds, p);
-        waiting[count++] = firstNearer ? node.next : at + 1;
-        waiting[count++] = firstNearer ? at + 1 : node.next;
-    }
+    visitLeaves([&](const Bounds& bounds) { return distanceSquared(bounds, p) < nearest; },
+                [&](const Node& leaf) {
+                    const auto distances = lanes_[leaf.next].distancesSquared(p);
+                    for (uint32_t i = 0; i < leaf.end - leaf.begin; ++i) nearest = std::min(nearest, distances[i]);
+                    return false;
+                });
     return std::sqrt(nearest);
 }
 

@@ -82,6 +82,9 @@ class SurfaceExtent {
         bool leaf = false;
     };
     void build(uint32_t begin, uint32_t end);
+    // Calls visit(leaf) until one call is true, for the leaves below boxes for which reaches(bounds).
+    template <typename Reaches, typename Visit>
+    void visitLeaves(const Reaches& reaches, const Visit& visit) const;
 
     std::vector<Crease> creases_;
     std::vector<Lanes> lanes_;
