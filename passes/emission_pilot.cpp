@@ -61,17 +61,20 @@ std::vector<LightPaths> tracePilot(LightTracerInput input, uint64_t paths, Threa
     return results;
 }
 
-std::vector<AimTrial> tryAims(LightTracerInput input, ThreadPool& pool) {
+AimTrials tryAims(LightTracerInput input, ThreadPool& pool) {
     constexpr uint64_t kPaths = 65536;
+    // Of the largest power of light that met a D: many aimed paths to learn from.
+    constexpr float kFairShare = 0.1F;
     // Dimmer than this share of the mean over caustics, light is not worth more.
-    constexpr float kDim = 0.01F;
+    constexpr float kDim = 0.1F;
     // Light that lands without a bend is seen by other means; that it goes on from there is worth something.
     constexpr float kWorthOfDirect = 0.25F;
     if (input.scene.casters().empty()) return {};
     const Store store = input.store;
     input.store = Store::All;
-    input.fairPower = kInfinity;  // nothing goes on
-    input.keepStarts = true;
+    // Infinite: nothing goes on.
+    input.fairPower = store == Store::Caustic ? kInfinity : kFairShare * input.sources.fairPower();
+    input.keepTrials = true;
     const std::vector<LightPaths> results = tracePilot(input, kPaths, pool);
     const PilotIrradiance irradiance(results, pool);
     std::vector<std::array<std::vector<float>, kPhotonClasses>> at(results.size());
@@ -82,6 +85,7 @@ std::vector<AimTrial> tryAims(LightTracerInput input, ThreadPool& pool) {
     });
     constexpr auto kCaustic = static_cast<size_t>(PhotonClass::Caustic);
     constexpr auto kDirect = static_cast<size_t>(PhotonClass::Direct);
+    constexpr auto kIndirect = static_cast<size_t>(PhotonClass::Indirect);
     // Harmonic where most photons are: a focus of no size does not count for all.
     double power = 0, area = 0;
     for (size_t i = 0; i < results.size(); ++i)
@@ -92,7 +96,10 @@ std::vector<AimTrial> tryAims(LightTracerInput input, ThreadPool& pool) {
         }
     if (!(area > 0)) return {};
     const float dim = kDim * static_cast<float>(power / area);
-    std::vector<AimTrial> trials;
+    const auto worthOf = [&](size_t task, size_t c, size_t photon) {
+        return powerOf(results[task].photons[c][photon].payload) / std::sqrt(at[task][c][photon] + dim);
+    };
+    AimTrials trials;
     for (size_t i = 0; i < results.size(); ++i) {
         std::array<size_t, kPhotonClasses> next{};
         for (const TracedStart& start : results[i].starts) {
@@ -101,11 +108,15 @@ std::vector<AimTrial> tryAims(LightTracerInput input, ThreadPool& pool) {
                 for (uint32_t n = 0; n < start.photons[c]; ++n, ++next[c]) {
                     const float direct = store == Store::Caustic ? 0 : kWorthOfDirect;
                     const float share = c == kCaustic ? 1 : c == kDirect ? direct : 0;
-                    trial.trial.worth +=
-                        share * powerOf(results[i].photons[c][next[c]].payload) / std::cbrt(at[i][c][next[c]] + dim);
+                    trial.trial.worth += share * worthOf(i, c, next[c]);
                 }
-            trials.push_back(trial);
+            trials.starts.push_back(trial);
         }
+        std::vector<DiffuseAim::Trial> aims = results[i].diffuseAims;
+        for (size_t p = 0; p < results[i].aimedBy.size(); ++p)
+            if (const uint32_t trial = results[i].aimedBy[p]; trial != kNoTrial)
+                aims[trial].trial.worth += worthOf(i, kIndirect, p);
+        trials.afterDiffuse.insert(trials.afterDiffuse.end(), aims.begin(), aims.end());
     }
     return trials;
 }

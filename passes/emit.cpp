@@ -48,11 +48,15 @@ Emission::Emission(const Scene& scene, const EmitSettings& settings, RunContext&
       diffuseAim_(scene, settings.aim ? kPilotDiffuseBoost : 0),
       tracer_{scene_, sources_, diffuseAim_, settings_.store, settings_.maxDepth, seed_},
       ledger_(scene.lights().size(), scene.objects().size()) {
-    if (settings_.aim) sources_.learn(tryAims(tracer_, run.pool));
+    if (settings_.aim) {
+        const AimTrials trials = tryAims(tracer_, run.pool);
+        sources_.learn(trials.starts);
+        diffuseAim_.learn(trials.afterDiffuse);
+    }
     const PilotFindings found = pilotEmission(tracer_, run.pool);
     tracer_.fairPower = found.fairPower;
     dispersion_ = found.dispersion;
-    if (settings_.aim) diffuseAim_ = DiffuseAim(scene, found.diffuseBoost);
+    if (settings_.aim) diffuseAim_.setBoost(found.diffuseBoost);
 }
 
 void Emission::trace(uint64_t next, uint64_t count, RunContext& run) {

@@ -1,5 +1,7 @@
 #include "passes/light_tracer.h"
 
+#include <optional>
+
 #include "base/hash.h"
 #include "path/ownership.h"
 
@@ -41,8 +43,8 @@ class LightTracer {
     void trace(const PathRun& paths) {
         constexpr size_t kSideBySide = 16;
         uint64_t next = paths.from;
-        // Starts are in order, if they are kept: one path at a time.
-        std::vector<Lane> lanes(in_.keepStarts ? 1 : kSideBySide);
+        // Trials are in order, if they are kept: one path at a time.
+        std::vector<Lane> lanes(in_.keepTrials ? 1 : kSideBySide);
         const auto refill = [&](Lane& lane) {
             while (next < paths.to)
                 if (start(paths.start + paths.order.index(next++), lane)) return true;
@@ -70,9 +72,18 @@ class LightTracer {
         LightWalkClass walk;
         PathCode code;
         uint32_t depth = 0;
-        int crossings = 0;          // since the last event
-        bool unaimed = false;       // left a Lambertian surface by its own lobe
-        bool aimedDiffuse = false;  // aimed since the light met a D
+        int crossings = 0;            // since the last event
+        bool unaimed = false;         // left a Lambertian surface by its own lobe
+        bool aimedDiffuse = false;    // aimed since the light met a D
+        uint32_t trial = kNoTrial;    // where it was aimed last
+        std::optional<float> uEvent;  // chosen with the direction, for the next event; without value: used
+
+        // The first number of an event.
+        float next() {
+            const float u = uEvent ? *uEvent : sampler.next();
+            uEvent.reset();
+            return u;
+        }
     };
 
     // A path of the emission, with all that it splits into.
@@ -104,7 +115,7 @@ class LightTracer {
         for (size_t c = 0; c < kPhotonClasses; ++c) lane.photonsBefore[c] = out_.photons[c].size();
         if (!in_.sources.sample(sampler, start)) {
             total_.endIn(column(LedgerColumn::Sampling));
-            if (in_.keepStarts) keepStart(lane);
+            if (in_.keepTrials) keepStart(lane);
             return false;
         }
         lane.path = {sampler, start.path(), total_};
@@ -121,7 +132,7 @@ class LightTracer {
     // The next of the paths that a path has split into; false: there is none, and it is done.
     bool nextOf(Lane& lane) {
         if (lane.waiting.empty()) {
-            if (in_.keepStarts) keepStart(lane);
+            if (in_.keepTrials) keepStart(lane);
             return false;
         }
         lane.path = lane.waiting.back();
@@ -200,6 +211,7 @@ class LightTracer {
         photon.key = hashCombine(in_.seed, hashCombine(lane.index, lane.stored++));
         if (path.code.overflowed()) ++out_.ledger.unclassified;
         out_.photons[static_cast<size_t>(c)].push_back(pack(photon));
+        if (in_.keepTrials && c == PhotonClass::Indirect) out_.aimedBy.push_back(path.uEvent ? kNoTrial : path.trial);
     }
 
     // Light goes on from a Lambertian surface as so many paths that each carries a fair power, none or several, and
@@ -211,7 +223,7 @@ class LightTracer {
         const DiffuseAim::At aim = in_.diffuseAim.at(v, lambert);
         const float fair = maxComponent(arriving * lambert.albedo) / in_.fairPower;
         const float lobe = std::min(fair, kMostCopies), copies = lobe * aim.effort();
-        const auto count = static_cast<uint32_t>(copies + path.sampler.next());
+        const auto count = static_cast<uint32_t>(copies + path.next());
         out_.afterDiffuse.lobePaths += static_cast<double>(lobe);
         if (aim.share() > 0) out_.afterDiffuse.seeingPaths += static_cast<double>(lobe);
         out_.afterDiffuse.inCones += static_cast<double>(lobe * aim.share());
@@ -234,22 +246,31 @@ class LightTracer {
         const float uChoice = path.sampler.next();
         DiffuseAim::Direction next;
         path.booked.become(arriving * lambert.albedo, column(LedgerColumn::AbsorbedSurface));
-        if (!aim.sample(uChoice, path.sampler.next2D(), next)) {
+        const Vec2 u = path.sampler.next2D();
+        const bool goesOn = aim.sample(uChoice, u, path.sampler.next(), next);
+        if (in_.keepTrials) keepAim(next, path);
+        if (!goesOn) {
             path.booked.endIn(column(LedgerColumn::Sampling));
             return false;
         }
         next.sample.weight = lambert.albedo * (aim.effort() * next.weight);
-        path.unaimed = !next.aimed;
-        path.aimedDiffuse |= next.aimed;
-        out_.afterDiffuse.aimedBounces += next.aimed ? 1 : 0;
+        path.uEvent = next.uEvent;
+        path.unaimed = !next.aimed();
+        path.aimedDiffuse |= next.aimed();
+        out_.afterDiffuse.aimedBounces += next.aimed() ? 1 : 0;
         path.booked.become(arriving * next.sample.weight, column(LedgerColumn::Sampling));
         return leave(v, next.sample, path);
+    }
+
+    void keepAim(const DiffuseAim::Direction& direction, LightPath& path) {
+        path.trial = direction.aimed() ? static_cast<uint32_t>(out_.diffuseAims.size()) : kNoTrial;
+        if (direction.aimed()) out_.diffuseAims.push_back({direction.caster, {direction.u, 0}});
     }
 
     bool bounce(const Vertex& v, LightPath& path) {
         const Rgb power = path.state.throughput;
         BsdfSample sample;
-        const float uLobe = path.sampler.next();
+        const float uLobe = path.next();
         const Vec2 u = path.sampler.next2D();
         if (std::holds_alternative<BlackBsdf>(v.bsdf) || !sampleBsdf(v.bsdf, v.wo, uLobe, u, sample)) {
             path.booked.endIn(column(LedgerColumn::AbsorbedSurface));

@@ -35,7 +35,7 @@ struct LightTracerInput {
     uint64_t seed = 0;
     float fairPower = 0;  // W: largest component of a photon's power once the light met a D, by splitting and roulette
     Stage stage = Stage::Emission;
-    bool keepStarts = false;
+    bool keepTrials = false;
 };
 
 // Where a path started, and how many photons it left.
@@ -55,13 +55,19 @@ struct AfterDiffuse {
     AfterDiffuse& operator+=(const AfterDiffuse& other);
 };
 
+inline constexpr uint32_t kNoTrial = ~0U;
+
 // What some paths came to, merged by sums that do not depend on the order.
 struct LightPaths {
     std::array<std::vector<PackedPhoton>, kPhotonClasses> photons;
     Ledger ledger;
     uint64_t rays = 0;
     AfterDiffuse afterDiffuse;
-    std::vector<TracedStart> starts;  // if they are kept: of each path
+    // If trials are kept: of each path, of each that was aimed from a diffuse surface (of no worth yet), and which of
+    // these each indirect photon followed, since it last met a D, over a bend (or kNoTrial).
+    std::vector<TracedStart> starts;
+    std::vector<DiffuseAim::Trial> diffuseAims;
+    std::vector<uint32_t> aimedBy;
 };
 
 // Paths of the emission, in the order in which they are traced: those numbered [from, to) along a block that starts at

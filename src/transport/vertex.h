@@ -23,6 +23,8 @@ struct Vertex {
     const MediaStack& media(bool through) const { return through && interface ? behind : before; }
     // Whether a direction (world) is on the other side than wo.
     bool isThrough(Vec3 wi) const { return glm::dot(wi, surface.ng) * glm::dot(woWorld, surface.ng) < 0; }
+    // The shading normal on wo's side.
+    Vec3 shadingNormal() const { return wo.z < 0 ? -surface.ns : surface.ns; }
     // The geometric normal on wo's side.
     Vec3 sideNormal() const { return glm::dot(surface.ng, woWorld) < 0 ? -surface.ng : surface.ng; }
 };

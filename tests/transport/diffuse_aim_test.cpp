@@ -3,7 +3,9 @@
 #include <doctest/doctest.h>
 
 #include "sampling/sampler.h"
+#include "sampling/warp.h"
 #include "support/chi_squared.h"
+#include "support/random.h"
 #include "support/scenes.h"
 #include "support/statistics.h"
 #include "transport/cone.h"
@@ -42,7 +44,22 @@ constexpr float kBoost = 4;
 
 bool sampleOnce(const DiffuseAim& aim, const Vertex& v, Sampler sampler, DiffuseAim::Direction& direction) {
     const float uChoice = sampler.next();
-    return aim.at(v, kGrey).sample(uChoice, sampler.next2D(), direction);
+    const Vec2 u = sampler.next2D();
+    return aim.at(v, kGrey).sample(uChoice, u, sampler.next(), direction);
+}
+
+// Teaches that in the upper half of each caster's cone nothing is worth anything, and in the lower most what the next
+// event's number leaves below a fourth.
+constexpr float kWorthMost = 0.25F;
+void teachLowerHalf(DiffuseAim& aim, const Scene& scene) {
+    test::Random random(11);
+    std::vector<DiffuseAim::Trial> trials;
+    for (size_t i = 0; i < 20'000 * scene.casters().size(); ++i) {
+        const PrimaryPoint u = {random.uniform(), random.uniform(), random.uniform(), 0};
+        const float below = u[2] < kWorthMost ? 8 : 1;
+        trials.push_back({i % scene.casters().size(), {u, squareToCone({u[0], u[1]}, 1).y > 0 ? 0 : below}});
+    }
+    aim.learn(trials);
 }
 
 }  // namespace
@@ -63,9 +80,64 @@ TEST_CASE("directions aimed from a diffuse surface have the density of the mixtu
                     return v.frame.toWorld(d.sample.wi);
                 },
                 [&](Vec3 direction) -> double {
-                    return direction.y * v.woWorld.y > 0 ? aim.at(v, kGrey).pdf(direction) : 0;
+                    return direction.y * v.woWorld.y > 0 ? aim.at(v, kGrey).pdf(direction, 0) : 0;
                 });
             CHECK(result.accepted(kAimTests));
+        }
+}
+
+TEST_CASE("what is learnt has the density of the mixture, of the direction and of the next event's number together") {
+    const auto scene = floorWithCasters();
+    DiffuseAim aim(*scene, kBoost);
+    teachLowerHalf(aim, *scene);
+    const Vertex v = floorAt({0, 0, 0}, false);
+    for (const bool most : {false, true}) {
+        CAPTURE(most);
+        uint64_t i = 0;
+        const auto result = test::chiSquaredOnSphere(
+            {24, 24, 12, 100'000},
+            [&]() -> std::optional<Vec3> {
+                DiffuseAim::Direction d;
+                if (!sampleOnce(aim, v, Sampler::sequence(i++, Stage::Test, 3), d)) return {};
+                if ((d.uEvent < kWorthMost) != most) return {};
+                return v.frame.toWorld(d.sample.wi);
+            },
+            [&](Vec3 direction) -> double {
+                if (direction.y <= 0) return 0;
+                constexpr int kNumbers = 4;  // between which the density hardly changes
+                const float from = most ? 0 : kWorthMost, length = most ? kWorthMost : 1 - kWorthMost;
+                double sum = 0;
+                for (int n = 0; n < kNumbers; ++n)
+                    sum += aim.at(v, kGrey).pdf(direction, from + length * (static_cast<float>(n) + 0.5F) / kNumbers);
+                return sum * static_cast<double>(length) / kNumbers;
+            });
+        CHECK(result.accepted(2));
+    }
+}
+
+TEST_CASE("light is aimed at the part of a caster that was worth most, from wherever on a surface and on either side") {
+    SceneBuilder builder;
+    builder.add(test::sphere({0, 1, 0}, 0.5F, 1), test::metal(0));
+    builder.add(test::sphere({0, -1, 0}, 0.5F, 1), test::metal(0));
+    const auto scene = builder.build();
+    DiffuseAim aim(*scene, 100);
+    teachLowerHalf(aim, *scene);
+    for (const bool fromBelow : {false, true})
+        for (const Vec3 p : {Vec3(1, 0, 0), Vec3(-0.5F, 0, 2)}) {
+            CAPTURE(fromBelow);
+            CAPTURE(p.x);
+            const Vertex v = floorAt(p, fromBelow);
+            test::Mean lower, most;
+            for (uint64_t i = 0; i < 20'000; ++i) {
+                DiffuseAim::Direction d;
+                if (!sampleOnce(aim, v, Sampler::sequence(i, Stage::Test, 4), d) || !d.aimed()) continue;
+                const Vec3 towards = v.frame.toWorld(d.sample.wi), centre = glm::normalize(Vec3(0, 1, 0) - p);
+                lower.add(std::abs(towards.y) < centre.y ? 1 : 0);
+                most.add(d.uEvent < kWorthMost ? 1 : 0);
+            }
+            // A tenth of the mean goes everywhere; the root of the mean square of 8 in a fourth, and 1.
+            CHECK(lower.value() > 0.9);
+            CHECK(most.value() > 0.6);
         }
 }
 
@@ -86,7 +158,7 @@ TEST_CASE("light aimed from a diffuse surface has even weights, near and far fro
                 if (!sampleOnce(aim, v, Sampler::sequence(1, Stage::Test, i), d)) continue;
                 CHECK(d.weight <= 1.00001F);
                 // Of the lobe's density, within the cone, by the cone's mean density: up to the cosine's change in it.
-                if (d.aimed) {
+                if (d.aimed()) {
                     if (aimed < 32) CHECK(d.weight < 2.5F / (1 + boost));
                     CHECK(d.weight > 0);
                 }
@@ -97,10 +169,12 @@ TEST_CASE("light aimed from a diffuse surface has even weights, near and far fro
 
 TEST_CASE("the mean weight is 1 on both sides, in a caster's sphere and beside casters below the horizon") {
     const auto scene = floorWithCasters();
-    const DiffuseAim aim(*scene, kBoost);
-    for (const bool fromBelow : {false, true})
+    DiffuseAim aim(*scene, kBoost);
+    for (const int round : {0, 1, 2, 3})
         for (const Vec3 p : {Vec3(0.2F, 0, 0.1F), Vec3(-2, 0, 0.1F), Vec3(1, 0.5F, 0), Vec3(0, 9, 0)}) {
-            CAPTURE(fromBelow);
+            const bool fromBelow = round % 2 == 1;
+            if (round == 2) teachLowerHalf(aim, *scene);
+            CAPTURE(round);
             CAPTURE(p.x);
             const Vertex v = floorAt(p, fromBelow);
             test::Mean weight;
@@ -125,7 +199,7 @@ TEST_CASE("no direction towards a far caster weighs as if it had not been aimed"
     const auto at = aim.at(v, kGrey);
     for (uint64_t i = 0; i < 300'000; ++i) {
         DiffuseAim::Direction d;
-        if (sampleOnce(aim, v, Sampler::sequence(1, Stage::Test, i), d) && d.aimed)
+        if (sampleOnce(aim, v, Sampler::sequence(1, Stage::Test, i), d) && d.aimed())
             REQUIRE(d.weight * (at.effort() - 1) < 2.5F * at.share());
     }
 }
@@ -147,7 +221,7 @@ TEST_CASE("more casters than are aimed at one by one are aimed at in groups") {
         const bool goesOn = sampleOnce(aim, v, Sampler::sequence(i, Stage::Test, 2), d);
         const float effort = aim.at(v, kGrey).effort();
         weight.add(goesOn ? static_cast<double>(d.weight * effort) : 0);
-        aimed.add((d.aimed ? 1 : 0) - (effort - 1) / effort);
+        aimed.add((d.aimed() ? 1 : 0) - (effort - 1) / effort);
     }
     CHECK(weight.agrees(1));
     CHECK(aimed.agrees(0));
@@ -163,9 +237,9 @@ TEST_CASE("nothing is aimed at a sphere around the point, nor at one below the h
         int aimed = 0;
         for (uint64_t i = 0; i < 1000; ++i) {
             DiffuseAim::Direction d;
-            if (!sampleOnce(aim, v, Sampler::sequence(1, Stage::Test, i), d)) d.aimed = true;
-            aimed += d.aimed ? 1 : 0;
-            if (!d.aimed) CHECK(d.weight > 0);
+            const bool goesOn = sampleOnce(aim, v, Sampler::sequence(1, Stage::Test, i), d);
+            aimed += d.aimed() || !goesOn ? 1 : 0;
+            if (goesOn && !d.aimed()) CHECK(d.weight > 0);
         }
         return aimed;
     };
