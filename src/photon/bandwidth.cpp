@@ -71,7 +71,7 @@ class RadiusSearch {
             // Light that sets in at an edge is plain in the ring, long before the kernel, which ends there, takes it
             // in.
             if (level > 0 && ring.dense >= kFewDense) return atLevel(level - 1, within.count);
-            if (level > 0 && anotherPower(ring, within)) return atLevel(level - 1, within.count);
+            if (level > 0 && anotherPower(ring, within, ringArea(level))) return atLevel(level - 1, within.count);
             within.add(ring);
             // On an edge discs agree with each other at whatever radius: each is half lit.
             if (level > 0 && scratch_.surface.whole() && toOneSide(within))
@@ -88,10 +88,22 @@ class RadiusSearch {
     }
 
   private:
-    static bool anotherPower(const Ring<kSignals>& ring, const Ring<kSignals>& within) {
+    // Of the surface in the ring, over that in the disc within it: 1, but for where creases cut them.
+    double ringArea(int level) const {
+        if (scratch_.surface.whole()) return 1;
+        const auto disc = [&](int l) {
+            const float radius = std::min(radiusOf(l), query_.maxRadius);
+            return square(radiusOf(l) / r0_) * scratch_.surface.areaShare(radius);
+        };
+        const double inner = static_cast<double>(disc(level - 1));
+        return std::max(0.0, static_cast<double>(disc(level)) / inner - 1);
+    }
+    // area: of the ring over the disc's.
+    static bool anotherPower(const Ring<kSignals>& ring, const Ring<kSignals>& within, double area) {
         for (size_t s = 0; s < kSignals; ++s) {
             const Moments &outer = ring.signals[s], &inner = within.signals[s];
-            if (square(outer.p - inner.p) > square(kRingTolerance) * (outer.pp + inner.pp)) return true;
+            if (square(outer.p - area * inner.p) > square(kRingTolerance) * (outer.pp + square(area) * inner.pp))
+                return true;
         }
         return false;
     }

@@ -228,9 +228,9 @@ bool IrradianceCache::sameSurface(const DensityQuery& query, Level& level, const
     if (height > kSteepest * distance + surfaceEpsilon(query.point.position, 0)) return false;
     // What lies between them is at most that far from the photon. Records know how far the nearest crease is, so that
     // few are looked for.
-    constexpr float kBeside = 1.01F * (1 + kPlaneThickness);
-    if (kBeside * distance < clearanceOf(level, place)) return true;
-    return !source_.extent.separates(query.point.position, query.point.ng, there.point.position);
+    const float beside = 1.01F * (distance + kPlaneThickness * source_.maxRadius);
+    if (beside < clearanceOf(level, place)) return true;
+    return !source_.extent.separates(query.point.position, query.point.ng, there.point.position, source_.maxRadius);
 }
 
 std::optional<IrradianceCache::Place> IrradianceCache::placeOf(Level& level, size_t run, Vec3 sideNormal) const {

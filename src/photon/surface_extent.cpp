@@ -213,9 +213,9 @@ void SurfaceExtent::around(Vec3 centre, Vec3 normal, float radius, SurfaceAround
     visitLeaves([&](const Bounds& bounds) { return distanceSquared(bounds, centre) <= reach; }, cutLeaf);
 }
 
-bool SurfaceExtent::separates(Vec3 centre, Vec3 normal, Vec3 p) const {
+bool SurfaceExtent::separates(Vec3 centre, Vec3 normal, Vec3 p, float radius) const {
     const Vec3 toP = p - centre, inPlane = toP - glm::dot(toP, normal) * normal;
-    const float length = glm::length(inPlane), thickness = kPlaneThickness * glm::length(toP);
+    const float length = glm::length(inPlane), thickness = kPlaneThickness * radius;
     if (!(length > 0)) return false;
     const Vec3 along = inPlane / length, across = glm::cross(normal, along);
     const auto crosses = [&](const Segment& crease) {
@@ -253,8 +253,8 @@ float SurfaceExtent::clearance(Vec3 p) const {
     return std::sqrt(nearest);
 }
 
-float SurfaceAround::share(float radius) const {
-    if (square(radius) <= nearestSquared_) return 1;
+template <typename Part>
+float SurfaceAround::meanOver(float radius, const Part& part) const {
     std::array<float, kDirections> reach;
     reach.fill(1);
     for (size_t i = 0; i < cuts_; ++i) {
@@ -263,8 +263,18 @@ float SurfaceAround::share(float radius) const {
         cut(Vec2(c.ax[lane], c.ay[lane]) / radius, Vec2(c.bx[lane], c.by[lane]) / radius, reach);
     }
     float sum = 0;
-    for (const float x : reach) sum += epanechnikovWithin(x);
-    return std::max(kLeastShare, sum / kDirections);
+    for (const float x : reach) sum += part(x);
+    return sum / kDirections;
+}
+
+float SurfaceAround::share(float radius) const {
+    if (square(radius) <= nearestSquared_) return 1;
+    return std::max(kLeastShare, meanOver(radius, epanechnikovWithin));
+}
+
+float SurfaceAround::areaShare(float radius) const {
+    if (square(radius) <= nearestSquared_) return 1;
+    return std::max(kLeastShare, meanOver(radius, [](float x) { return x * x; }));
 }
 
 bool SurfaceAround::hides(Vec3 p) const {

@@ -20,6 +20,8 @@ class SurfaceAround {
     // Of an Epanechnikov kernel's mass, in (0, 1]. Radii as large as the one asked for in SurfaceExtent::around, or
     // less.
     float share(float radius) const;
+    // Of a disc's area, in (0, 1].
+    float areaShare(float radius) const;
     // Whether a crease lies between the point and p.
     bool hides(Vec3 p) const;
     // Whether a crease comes within the distance (m) of p. Of creases only what lies within the radius asked for
@@ -36,6 +38,9 @@ class SurfaceAround {
     };
     void clear();
     void add(Vec2 a, Vec2 b);
+    // Mean of part(reach) over the directions, reach being how far the surface goes there, in radii, at most 1.
+    template <typename Part>
+    float meanOver(float radius, const Part& part) const;
 
     Frame frame_;
     Vec3 centre_{0};
@@ -53,8 +58,8 @@ class SurfaceExtent {
 
     // normal: of the tangent plane, unit. The result is overwritten, its memory used again.
     void around(Vec3 centre, Vec3 normal, float radius, SurfaceAround& out) const;
-    // Whether a crease lies between the points: what around() as far as p would say that it hides.
-    bool separates(Vec3 centre, Vec3 normal, Vec3 p) const;
+    // Whether a crease lies between the points: what around() as far as the radius would say that it hides.
+    bool separates(Vec3 centre, Vec3 normal, Vec3 p, float radius) const;
     // In m, from p to the nearest crease; infinite if there is none.
     float clearance(Vec3 p) const;
 

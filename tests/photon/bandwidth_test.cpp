@@ -33,6 +33,24 @@ TEST_CASE("where light is even the bandwidth grows as far as it may") {
     CHECK(wide > 90);
 }
 
+TEST_CASE("beside a crease even light has bandwidths as wide as in the open") {
+    Square square(14, 20'000, 1);
+    BandwidthScratch scratch;
+    const auto widths = [&] {
+        test::Mean radius;
+        for (uint32_t i = 0; i < square.tree.count; i += 3) {
+            const Vec3 p = positionOf(square, i);
+            if (p.x > -0.01F || p.x < -0.06F || std::fabs(p.y) > 0.8F) continue;
+            radius.add(static_cast<double>(consistentBandwidth(square.source(), i, kSquareRule, scratch).radius));
+        }
+        return radius.value();
+    };
+    const double open = widths();
+    const std::vector<Segment> crease = {{{0, -1, 0}, {0, 1, 0}}};
+    square.extent = SurfaceExtent(crease);
+    CHECK(widths() > open);  // it takes more for as many photons
+}
+
 TEST_CASE("a bandwidth ends at an edge, on its dark side as well") {
     const Square square(3, 2000, 50);
     BandwidthScratch scratch;

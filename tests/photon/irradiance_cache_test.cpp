@@ -236,6 +236,25 @@ TEST_CASE("beside an edge the cached irradiance is that of its own side" * docte
     CHECK(darkMost < 2);  // 50 photons: a standard error of 16%
 }
 
+TEST_CASE("a crease above the surface, up to which records reach, ends what they say of it") {
+    // As of a lamp close below a ceiling: dark between them, bright beside it.
+    Square square(17, 2000, 50);
+    const std::vector<Segment> crease = {{{0, -1, 0.05F}, {0, 1, 0.05F}}};
+    square.extent = SurfaceExtent(crease);
+    IrradianceCache cache(square.source(), kIrradianceRule);
+    BandwidthScratch scratch;
+    Random random(18);
+    int known = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const Vec3 p(random.between(-0.03F, 0), random.between(-0.7F, 0.7F), 0);
+        const CachedLight light = cache.at(queryFrom(p), true, scratch);
+        if (light.irradiance.empty()) continue;
+        ++known;
+        REQUIRE(light.irradiance.back().y < 2 * 2000 * 1.5F);
+    }
+    CHECK(known > 1000);
+}
+
 TEST_CASE("a group's irradiance is its own photons', and those of no group leave nothing") {
     const Square square(13, 5000, 1);
     IrradianceCache both(square.source(2), kIrradianceRule), one(square.source(1), kIrradianceRule);

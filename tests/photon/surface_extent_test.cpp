@@ -68,6 +68,15 @@ TEST_CASE("beside a straight edge the share is the kernel's integral") {
         CHECK(shareAt({5, distance, 0}, 1) == doctest::Approx(massBeside(static_cast<double>(distance))).epsilon(0.01));
 }
 
+TEST_CASE("beside a straight edge the share of the area is the disc's less a segment of it") {
+    for (const double distance : {0.1, 0.3, 0.6, 0.9}) {
+        const double beyond = std::acos(distance) - distance * std::sqrt(1 - distance * distance);
+        const SurfaceAround surface = around({5, static_cast<float>(distance), 0}, 1);
+        CHECK(static_cast<double>(surface.areaShare(1)) == doctest::Approx(1 - beyond * 0.318309886).epsilon(0.015));
+    }
+    CHECK(around({5, 0.51F, 0}, 0.5F).areaShare(0.5F) == 1);
+}
+
 TEST_CASE("an edge above the plane's thickness does not end the surface") {
     CHECK(shareAt({5, 0.1F, -0.9F * kPlaneThickness}, 1) < 1);
     CHECK(shareAt({5, 0.1F, -1.1F * kPlaneThickness}, 1) == 1);
@@ -131,16 +140,17 @@ TEST_CASE("a crease separates two points if it hides one from the other") {
     for (int i = 0; i < 3000; ++i) {
         const Vec3 centre = within(9, random), normal = glm::normalize(within(1, random));
         const Vec3 p = centre + within(2, random);
+        const float radius = (1 + random.uniform()) * glm::length(p - centre);
         SurfaceAround surface;
-        extent.around(centre, normal, glm::length(p - centre), surface);
+        extent.around(centre, normal, radius, surface);
         const bool hidden = surface.hides(p);
-        CHECK(extent.separates(centre, normal, p) == hidden);
+        CHECK(extent.separates(centre, normal, p, radius) == hidden);
         separated += hidden ? 1 : 0;
     }
     CHECK(separated > 300);
     CHECK(separated < 2700);
-    CHECK(!extent.separates({1, 2, 3}, {0, 0, 1}, {1, 2, 3}));
-    CHECK(!SurfaceExtent().separates({1, 2, 3}, {0, 0, 1}, {1, 3, 3}));
+    CHECK(!extent.separates({1, 2, 3}, {0, 0, 1}, {1, 2, 3}, 1));
+    CHECK(!SurfaceExtent().separates({1, 2, 3}, {0, 0, 1}, {1, 3, 3}, 1));
 }
 
 TEST_CASE("the clearance is the distance of the nearest crease") {
