@@ -59,6 +59,7 @@ class RadiusSearch {
         atEdge_ = true;
         int known = 0;
         Ring<kSignals> within;
+        double areaWithin = 0;
         for (int level = 0;; ++level) {
             if (level == known) {
                 const int more = std::min(known + (4 * within.count > rule_.mostCount ? 1 : 2), kMostLevels);
@@ -71,7 +72,10 @@ class RadiusSearch {
             // Light that sets in at an edge is plain in the ring, long before the kernel, which ends there, takes it
             // in.
             if (level > 0 && ring.dense >= kFewDense) return atLevel(level - 1, within.count);
-            if (level > 0 && anotherPower(ring, within, ringArea(level))) return atLevel(level - 1, within.count);
+            const double area = discArea(level);
+            if (level > 0 && anotherPower(ring, within, std::max(0.0, area / areaWithin - 1)))
+                return atLevel(level - 1, within.count);
+            areaWithin = area;
             within.add(ring);
             // On an edge discs agree with each other at whatever radius: each is half lit.
             if (level > 0 && scratch_.surface.whole() && toOneSide(within))
@@ -88,17 +92,12 @@ class RadiusSearch {
     }
 
   private:
-    // Of the surface in the ring, over that in the disc within it: 1, but for where creases cut them.
-    double ringArea(int level) const {
-        if (scratch_.surface.whole()) return 1;
-        const auto disc = [&](int l) {
-            const float radius = std::min(radiusOf(l), query_.maxRadius);
-            return square(radiusOf(l) / r0_) * scratch_.surface.areaShare(radius);
-        };
-        const double inner = static_cast<double>(disc(level - 1));
-        return std::max(0.0, static_cast<double>(disc(level)) / inner - 1);
+    // Of what creases leave of a level's disc, in those of the least disc.
+    double discArea(int level) const {
+        const float share = scratch_.surface.areaShare(std::min(radiusOf(level), query_.maxRadius));
+        return static_cast<double>(share * static_cast<float>(1 << level));
     }
-    // area: of the ring over the disc's.
+    // area: of the ring, over the disc's.
     static bool anotherPower(const Ring<kSignals>& ring, const Ring<kSignals>& within, double area) {
         for (size_t s = 0; s < kSignals; ++s) {
             const Moments &outer = ring.signals[s], &inner = within.signals[s];

@@ -255,6 +255,7 @@ float SurfaceExtent::clearance(Vec3 p) const {
 
 template <typename Part>
 float SurfaceAround::meanOver(float radius, const Part& part) const {
+    if (square(radius) <= nearestSquared_) return part(1);
     std::array<float, kDirections> reach;
     reach.fill(1);
     for (size_t i = 0; i < cuts_; ++i) {
@@ -267,13 +268,9 @@ float SurfaceAround::meanOver(float radius, const Part& part) const {
     return sum / kDirections;
 }
 
-float SurfaceAround::share(float radius) const {
-    if (square(radius) <= nearestSquared_) return 1;
-    return std::max(kLeastShare, meanOver(radius, epanechnikovWithin));
-}
+float SurfaceAround::share(float radius) const { return std::max(kLeastShare, meanOver(radius, epanechnikovWithin)); }
 
 float SurfaceAround::areaShare(float radius) const {
-    if (square(radius) <= nearestSquared_) return 1;
     return std::max(kLeastShare, meanOver(radius, [](float x) { return x * x; }));
 }
 
