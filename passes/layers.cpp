@@ -18,20 +18,28 @@ const LayerRequest kBuiltIn[] = {
 
 const char* kReserved[] = {"albedo", "normal", "depth", "unclassified"};
 
-// States that can be reached from the start by one event or more of those given.
-uint64_t statesAfter(const PathExpr& e, std::initializer_list<Event> events) {
-    uint64_t reached = 0, frontier = 1;  // the start
-    while (frontier != 0) {
-        uint64_t next = 0;
-        for (int s = 0; s < e.states(); ++s) {
-            if (((frontier >> s) & 1) == 0) continue;
-            for (const Event event : events) next |= uint64_t{1} << e.next(static_cast<uint8_t>(s), event);
-        }
-        frontier = next & ~reached;
-        reached |= next;
+// States that follow those of the mask by one of the events.
+uint64_t statesAfter(const PathExpr& e, uint64_t states, std::initializer_list<Event> events) {
+    uint64_t after = 0;
+    for (int s = 0; s < e.states(); ++s) {
+        if (((states >> s) & 1) == 0) continue;
+        for (const Event event : events) after |= uint64_t{1} << e.next(static_cast<uint8_t>(s), event);
     }
+    return after;
+}
+
+// States that are among those of the mask or follow them by any number of the events.
+uint64_t statesFrom(const PathExpr& e, uint64_t states, std::initializer_list<Event> events) {
+    uint64_t reached = 0;
+    for (uint64_t frontier = states; frontier != 0; frontier = statesAfter(e, frontier, events) & ~reached)
+        reached |= frontier;
     return reached;
 }
+
+constexpr uint64_t kStart = 1;
+constexpr std::initializer_list<Event> kBends = {Event::Specular, Event::Glossy};
+constexpr std::initializer_list<Event> kScatters = {Event::Diffuse, Event::Glossy};
+constexpr std::initializer_list<Event> kAnyEvent = {Event::Diffuse, Event::Specular, Event::Glossy};
 
 }  // namespace
 
@@ -62,20 +70,17 @@ RenderLayers::RenderLayers(const std::vector<LayerRequest>& requests, const std:
         only_ = static_cast<int>(layers.size());
         layers.push_back({kOnlyLayer, PathExpr(*only)});
         const PathExpr& e = layers.back().expression;
-        causticStates_ = statesAfter(e, {Event::Specular, Event::Glossy});
-        indirectStates_ = statesAfter(e, {Event::Diffuse, Event::Specular, Event::Glossy});
+        causticStates_ = statesFrom(e, statesAfter(e, kStart, kBends), kBends);
+        indirectStates_ = statesFrom(e, statesAfter(e, statesFrom(e, kStart, kAnyEvent), kScatters), kAnyEvent);
     }
     filter_ = PathFilter(std::move(layers));
 }
 
 bool RenderLayers::wants(uint64_t photonStates) const {
     if (only_ < 0) return true;
-    const PathExpr& e = only();
-    for (int s = 0; s < e.states(); ++s) {
-        if (((photonStates >> s) & 1) == 0) continue;
-        for (const Event event : {Event::Diffuse, Event::Glossy})
-            if (e.alive(e.next(static_cast<uint8_t>(s), event))) return true;
-    }
+    const uint64_t landed = statesAfter(only(), photonStates, kScatters);
+    for (int s = 0; s < only().states(); ++s)
+        if (((landed >> s) & 1) != 0 && only().alive(static_cast<uint8_t>(s))) return true;
     return false;
 }
 

@@ -58,7 +58,7 @@ class RenderLayers {
     PathFilter filter_;
     int only_ = -1;
     uint64_t causticStates_ = 0;   // states of `only` after one or more S or G
-    uint64_t indirectStates_ = 0;  // after any event or more
+    uint64_t indirectStates_ = 0;  // after events of which one is D or G
 };
 
 // One sample's light by film layer.

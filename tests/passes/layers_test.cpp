@@ -57,6 +57,28 @@ TEST_CASE("built-in layers are a partition too") {
     }
 }
 
+TEST_CASE("a picture of single paths wants no photons that cannot be on them") {
+    struct Row {
+        std::string expression;
+        bool caustic, indirect;
+    };
+    // D may be glossy, and bend light as a caster does; but not where G is named.
+    for (const Row& row : {Row{"LS+DE", true, false},
+                           {"LS+DS+E", true, false},
+                           {"LDE", false, false},
+                           {"LD+E", true, true},
+                           {"LD+E|LGE", false, true},
+                           {"LDS+DE", true, true},
+                           {"LGDE", true, true},
+                           {"L[DS]*E", true, true}}) {
+        CAPTURE(row.expression);
+        const RenderLayers layers({}, row.expression);
+        CHECK(layers.wantsCaustic() == row.caustic);
+        CHECK(layers.wantsIndirect() == row.indirect);
+    }
+    CHECK(RenderLayers({}, {}).wantsIndirect());
+}
+
 TEST_CASE("only renders the mean of its layer, and nothing else") {
     for (const char* expression : {"LS+DE", "LDE", "LS+DS+E", "LD[DS]+E"}) {
         CAPTURE(expression);
