@@ -61,7 +61,7 @@ TEST_CASE("small balls get all of their light, however few photons each has") {
         CAPTURE(passes);
         s.progressive = passes;
         Mean seen;
-        for (const RenderResult& picture : pictures(*scene, s, passes > 0 ? 40 : 16)) {
+        for (const RenderResult& picture : pictures(*scene, s, passes > 0 ? 48 : 16)) {
             CHECK(picture.storedPhotons < 4000);
             seen.add(meanOf(picture.picture));
         }
@@ -79,15 +79,22 @@ TEST_CASE("a photon weighs by the facet that it met, where shading turns away fr
     const RgbImage expected = shrunk(render(*scene, s).picture, 8);
     s.integrator = "photon";
     s.spp = 16;
+    constexpr int kPictures = 4;  // the brightest of one's noise may be as bright as what is looked for
     for (const auto& [photons, most] : {std::pair<uint64_t, float>(100000, 0.02F), {1000000, 0.01F}}) {
         CAPTURE(photons);
         s.photons = photons;
-        const RgbImage seen = shrunk(render(*scene, s).picture, 8);
+        RgbImage seen(expected.width, expected.height);
+        for (const RenderResult& picture : pictures(*scene, s, kPictures)) {
+            const RgbImage each = shrunk(picture.picture, 8);
+            for (size_t i = 0; i < seen.pixels.size(); ++i)
+                seen.pixels[i] += each.pixels[i] / static_cast<float>(kPictures);
+        }
         CHECK(meanOf(seen) / meanOf(expected) == doctest::Approx(1).epsilon(most).scale(0));
         float above = 0;
         for (size_t i = 0; i < seen.pixels.size(); ++i)
             above = std::max(above, seen.pixels[i].x - expected.pixels[i].x);
-        CHECK(above < 0.004F);  // of .26, the brightest
+        MESSAGE("too bright by ", above);
+        CHECK(above < 0.003F);  // of .26, the brightest
     }
 }
 
