@@ -76,7 +76,7 @@ RadiusRule scaledTo(uint64_t photons, RadiusRule rule);
 struct GatherSettings {
     IndexKind index = IndexKind::Kd;
     RadiusRule caustic{3.5e5, {{20, 2000, 2.5F}, 300}, 1600, 20, 80, 0.5F};
-    RadiusRule indirect{1e6, {{50, 8000, 3}, 25}, 8000, 50, 400, 0};
+    RadiusRule indirect{1e6, {{50, 8000, 3, 1}, 25}, 8000, 50, 400, 0};
     bool indirectFromMap = true;  // where the map holds that class
     // Width of the kernel by which a dispersed path from the eye takes dispersed photons of other wavelengths.
     float wavelengthShare = 0.1F;

@@ -31,6 +31,9 @@ struct BandwidthRule {
     uint32_t leastCount = 20;   // photons in the smallest radius tried
     uint32_t mostCount = 1000;  // photons in the largest, roughly
     float tolerance = 1;        // standard errors by which estimates of two radii may differ
+    // Standard errors of the count within that photons which lie far denser may come to in a ring, beyond a few: where
+    // copies of a path meet again by chance they are no edge.
+    float denseTolerance = 0;
 };
 
 // The query at a photon's place, on the side on which it landed, with the source's largest radius.
@@ -98,11 +101,11 @@ struct Bandwidth {
 
 // The largest of the radii r0, sqrt(2) r0, 2 r0, ... (r0: distance to photon number leastCount) whose estimate is
 // consistent with those of all smaller ones: |E_i - E_j| <= tolerance * standard error of E_i (Lepski 1991), before
-// which it ends where the power in the outer ring is plainly another, a few photons there lie far denser, or the power
-// within lies to one side. Where
-// light is smooth the radius grows as long as it pays, at edges it stays small. The photon itself is left out: it is
-// there for certain. Power is the channels' sum; of dispersed light all must hold for each channel, since a rainbow may
-// be as bright throughout. A disc that ended at an edge and holds few photons grows on along it (photon/elongation.h).
+// which it ends where the power in the outer ring is plainly another, photons there lie far denser, or the power within
+// lies to one side. Where light is smooth the radius grows as long as it pays, at edges it stays small. The photon
+// itself is left out: it is there for certain. Power is the channels' sum; of dispersed light all must hold for each
+// channel, since a rainbow may be as bright throughout. A disc that ended at an edge and holds few photons grows on
+// along it (photon/elongation.h).
 Bandwidth consistentBandwidth(const PhotonSource& source, uint32_t photon, const BandwidthRule& rule,
                               BandwidthScratch& scratch);
 

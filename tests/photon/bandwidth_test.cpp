@@ -33,6 +33,43 @@ TEST_CASE("where light is even the bandwidth grows as far as it may") {
     CHECK(wide > 90);
 }
 
+TEST_CASE("clumps of a few photons end a bandwidth, or do not where the rule says so") {
+    // Copies of paths that met again: a millimetre wide, one clump among five hundred photons.
+    const auto meanRadius = [](bool clumps, float denseTolerance) {
+        Square square(15, 20'000, 1);
+        Random random(16);
+        std::vector<Photon> photons;
+        for (uint32_t i = 0; i < square.tree.count; ++i) photons.push_back(test::photonAt(positionOf(square, i), i));
+        for (int clump = 0; clumps && clump < 160; ++clump) {
+            const Vec3 at(random.between(-1, 1), random.between(-1, 1), 0);
+            for (uint32_t i = 0; i < kBlockSize; ++i) {
+                const Vec3 beside(random.uniform(), random.uniform(), 0);
+                photons.push_back(test::photonAt(at + 1e-3F * beside, random.bits()));
+                photons.back().light = 1;
+            }
+        }
+        square.tree = test::treeOf(photons);
+        square.index = AnyIndex(KdIndex(view(square.tree)));
+        square.groups.assign(square.tree.count, 0);
+        square.sumBlocks();
+        BandwidthRule rule = kSquareRule;
+        rule.denseTolerance = denseTolerance;
+        BandwidthScratch scratch;
+        test::Mean radius;
+        for (uint32_t i = 0; i < square.tree.count; i += 31) {
+            const Vec3 p = positionOf(square, i);
+            if (std::max(std::fabs(p.x), std::fabs(p.y)) > 0.8F || square.tree.payload[i].light == 1) continue;
+            radius.add(static_cast<double>(consistentBandwidth(square.source(), i, rule, scratch).radius));
+        }
+        return radius.value();
+    };
+    const double even = meanRadius(false, 0);
+    const double ended = meanRadius(true, 0) / even, goesOn = meanRadius(true, 1) / even;
+    MESSAGE("of even light's radius ", ended, ", tolerant ", goesOn);
+    CHECK(ended < 0.75);
+    CHECK(goesOn > 0.8);
+}
+
 TEST_CASE("beside a crease even light has bandwidths as wide as in the open") {
     Square square(14, 20'000, 1);
     BandwidthScratch scratch;
