@@ -16,6 +16,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import errors
 import methods
+import mitsuba_to_luxcore
 import page
 import results
 
@@ -207,6 +208,83 @@ class Methods(unittest.TestCase):
             self.run_python('import sys\nprint("warning: x\\nno light", file=sys.stderr)\nsys.exit(3)')
         with self.assertRaisesRegex(methods.RunError, 'no picture'):
             self.run_python('pass')
+
+
+class MitsubaToLuxcore(unittest.TestCase):
+    SENSOR = '''<sensor type="perspective"><string name="fov_axis" value="y"/><float name="fov" value="40"/>
+        <transform name="to_world"><matrix value="-1 0 0 1 0 0 -1 5 0 -1 0 2 0 0 0 1"/></transform>
+        <film type="hdrfilm"><integer name="width" value="$w"/><integer name="height" value="100"/><rfilter type="box"/>
+        </film></sensor>'''
+    GLASS = '<bsdf type="dielectric"><float name="int_ior" value="1.5"/><float name="ext_ior" value="1"/></bsdf>'
+    MEDIUM = '''<medium name="interior" type="homogeneous"><rgb name="sigma_t" value="1 2 3"/>
+        <float name="scale" value="2"/><float name="albedo" value="0"/></medium>'''
+
+    def translate(self, scene):
+        return mitsuba_to_luxcore.translate(f'<scene><default name="w" value="200"/>{self.SENSOR}{scene}</scene>')
+
+    def shape(self, inside):
+        found = self.translate(f'<shape type="ply" id="it"><string name="filename" value="it.ply"/>{inside}</shape>')
+        return {name.replace('.shape2', ''): value for name, value in found.properties.items()}, found
+
+    def test_the_camera_looks_down_with_a_row_less(self):
+        found = self.translate('')
+        camera = {name.removeprefix('scene.camera.'): value for name, value in found.properties.items()}
+        self.assertEqual((found.width, found.height), (200, 100))
+        self.assertEqual(camera['lookat.orig'], [1, 5, 2])
+        self.assertEqual(camera['lookat.target'], [1, 4, 2])
+        self.assertEqual(camera['up'], [0, 0, -1])
+        self.assertEqual(camera['fieldofview'], 40)
+        np.testing.assert_allclose(camera['screenwindow'], [-2, 2, -1.02, .98])
+
+    def test_glass_absorbs_in_its_medium(self):
+        properties, found = self.shape(self.GLASS + self.MEDIUM)
+        self.assertEqual(properties['scene.materials.type'], 'glass')
+        self.assertEqual(properties['scene.materials.interiorior'], 1.5)
+        self.assertEqual(properties['scene.materials.volume.interior'], 'shape2_inside')
+        self.assertEqual(properties['scene.volumes_inside.absorption'], [2, 4, 6])
+        self.assertEqual(properties['scene.volumes_inside.ior'], 1.5)
+        self.assertTrue(found.caustics)
+
+    def test_lights_keep_their_units(self):
+        lamp = '<emitter type="area"><rgb name="radiance" value="7"/></emitter>'
+        properties, found = self.shape(f'<bsdf type="diffuse"><rgb name="reflectance" value="0 0 .5"/></bsdf>{lamp}')
+        self.assertEqual(properties['scene.materials.kd'], [0, 0, .5])
+        self.assertEqual(properties['scene.materials.emission'], [7, 7, 7])
+        self.assertFalse(found.caustics)
+        point = self.translate('''<emitter type="point"><point name="position" x="1" y="2" z="3"/>
+            <rgb name="intensity" value="3 2 1"/></emitter>''').properties
+        self.assertEqual(point['scene.lights.light2.position'], [1, 2, 3])
+        power = np.multiply(point['scene.lights.light2.color'], point['scene.lights.light2.gain'])
+        np.testing.assert_allclose(power, 4 * np.pi * np.array([3, 2, 1]))
+
+    def test_what_cannot_be_expressed_is_refused_by_name(self):
+        rough = '<bsdf type="roughconductor"><float name="alpha" value=".1"/></bsdf>'
+        for scene, message in ((f'<shape type="ply" id="it"><string name="filename" value="x"/>{rough}</shape>',
+                                'bsdf "roughconductor"'),
+                               ('<shape type="ply" id="it"><string name="filename" value="x"/></shape>', 'no bsdf'),
+                               ('<shape type="sphere" id="it"/>', 'shape "sphere" it'),
+                               ('<emitter type="envmap"/>', 'emitter "envmap"'),
+                               ('<emitter type="point"><boolean name="x" value="true"/></emitter>', 'boolean "x"')):
+            with self.subTest(message), self.assertRaisesRegex(mitsuba_to_luxcore.Inexpressible, message):
+                self.translate(scene)
+        with self.assertRaisesRegex(mitsuba_to_luxcore.Inexpressible, 'it: face_normals is not known'):
+            self.shape(self.GLASS + '<string name="face_normals" value="1"/>')
+        with self.assertRaisesRegex(mitsuba_to_luxcore.Inexpressible, '"directional": is a tenth too dark'):
+            mitsuba_to_luxcore.translate('<scene><emitter type="directional"/></scene>', bidirectional=True)
+        with self.assertRaisesRegex(mitsuba_to_luxcore.Inexpressible, 'scatters'):
+            self.shape(self.GLASS + self.MEDIUM.replace('"albedo" value="0"', '"albedo" value=".5"'))
+
+    def test_the_view_is_measured_at_the_middle_of_what_does_not_shine(self):
+        with tempfile.TemporaryDirectory() as folder:
+            mesh = Path(folder) / 'it.ply'
+            vertices = np.array([[0, -1, 1, .5], [2, 1, 3, .5]], '<f4')
+            mesh.write_bytes(b'ply\nformat binary_little_endian 1.0\nelement vertex 2\n'
+                             + b''.join(b'property float %c\n' % c for c in b'xyzu')
+                             + b'element face 0\nproperty list uchar uint vertex_indices\nend_header\n'
+                             + vertices.tobytes())
+            found = self.translate('')
+            found.meshes = [mesh]
+            self.assertAlmostEqual(found.view_height(), 5 * 2 * np.tan(np.radians(20)))
 
 
 if __name__ == '__main__':

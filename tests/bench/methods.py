@@ -7,8 +7,10 @@ import sys
 import tempfile
 import threading
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
+
+import mitsuba_to_luxcore
 
 HERE = Path(__file__).resolve().parent
 
@@ -18,18 +20,30 @@ class RunError(Exception):
 
 
 @cache
-def _without_mitsuba():
-    """Why Mitsuba cannot run, or None. Asked of another process: a wrong LLVM ends the one that asks."""
-    code = '''import mitsuba, drjit
-mitsuba.set_variant("llvm_ad_rgb")
-drjit.eval(drjit.arange(mitsuba.Float, 4) + 1)'''
+def _without(program, code):
+    """Why a peer cannot run, or None. Asked of another process: a wrong LLVM ends the one that asks."""
     probe = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True)
     lines = probe.stderr.strip().splitlines() or [f'ended with {probe.returncode}']
-    return None if probe.returncode == 0 else f'Mitsuba does not run here: {lines[-1]}'
+    return None if probe.returncode == 0 else f'{program} does not run here: {lines[-1]}'
+
+
+NO_XML = 'there is no Mitsuba file of it'
 
 
 def mitsuba_needs(scene):
-    return _without_mitsuba() if scene.mitsuba else 'there is no Mitsuba file of it'
+    return _without('Mitsuba', '''import mitsuba, drjit
+mitsuba.set_variant("llvm_ad_rgb")
+drjit.eval(drjit.arange(mitsuba.Float, 4) + 1)''') if scene.mitsuba else NO_XML
+
+
+def luxcore_needs(scene, bidirectional=False):
+    if not scene.mitsuba:
+        return NO_XML
+    try:
+        mitsuba_to_luxcore.translate(scene.mitsuba.read_text(), scene.mitsuba.parent, bidirectional)
+    except mitsuba_to_luxcore.Inexpressible as problem:
+        return f'not for LuxCore: {problem}'
+    return _without('LuxCore', 'import pyluxcore; pyluxcore.Init()')
 
 
 @dataclass(frozen=True)
@@ -44,6 +58,7 @@ class Method:
 
 LIMITS = '--cpu-time {budget} --no-cache --seed {seed} -o {picture} --force --quiet --json {json}'
 MITSUBA = '{python} {here}/peer_mitsuba.py {mitsuba} --cpu-time {budget} --seed {seed} -o {picture} --integrator '
+LUXCORE = '{python} {here}/peer_luxcore.py {mitsuba} --cpu-time {budget} --seed {seed} -o {picture} --method '
 
 METHODS = {
     'render': Method('{lsde} render {glb} ' + LIMITS, filters=True),
@@ -51,6 +66,9 @@ METHODS = {
     'light': Method('{lsde} reference {glb} --integrator light ' + LIMITS, filters=True),
     'mitsuba-path': Method(MITSUBA + 'path', picture='picture.npy', needs=mitsuba_needs),
     'mitsuba-ptracer': Method(MITSUBA + 'ptracer', picture='picture.npy', needs=mitsuba_needs),
+    'luxcore-photongi': Method(LUXCORE + 'photongi', picture='picture.npy', needs=luxcore_needs),
+    'luxcore-bidir': Method(LUXCORE + 'bidir', picture='picture.npy',
+                            needs=partial(luxcore_needs, bidirectional=True)),
 }
 
 
