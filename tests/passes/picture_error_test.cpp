@@ -96,7 +96,7 @@ TEST_CASE("an error that is asked for is reached, by as many photons and samples
     settings.spp.reset();
     settings.photons.reset();
     uint64_t samples = 0, photons = 0;
-    for (const double limit : {1e-2, 1.4e-4}) {
+    for (const double limit : {1e-2, 8e-5}) {
         settings.errorLimit = limit;
         const RenderResult r = test::render("pool-small", settings);
         CHECK(r.relativeError->total() <= limit);
