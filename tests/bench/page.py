@@ -133,14 +133,14 @@ def picture(result, scene, path_class, title):
         raise KeyError(f'"{scene}" "{path_class}": not in the result, expected one of {there}')
     methods = charts[scene, path_class]
     colours = colours_of(result)
-    top = 26
-    names = ''.join(f'<tspan fill="{colours[name]}" dx="12" font-weight="600">{escape(name)}</tspan>'
-                    for name in methods)
+    top = 42
+    names = ''.join(f'<tspan fill="{colours[name]}" dx="{12 if i else 0}" font-weight="600">{escape(name)}</tspan>'
+                    for i, name in enumerate(methods))
     inner = chart(methods, colours, parts=('error',))
     return (f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{HEIGHT + top}" '
             f'viewBox="0 0 {WIDTH} {HEIGHT + top}"><style>text {{ font: 11px system-ui, sans-serif; fill: #333; }} '
             f'.title {{ font-size: 13px; }}</style><rect width="100%" height="100%" fill="#fff"/>{CLIP}'
-            f'<text class="title" x="{LEFT}" y="17">{escape(title)}:{names}</text>'
+            f'<text class="title" x="{LEFT}" y="17">{escape(title)}</text><text x="{LEFT}" y="34">{names}</text>'
             f'<g transform="translate(0 {top})">{inner}</g></svg>\n')
 
 
