@@ -71,7 +71,7 @@ class RadiusSearch {
             const Ring<kSignals>& ring = rings_[static_cast<size_t>(level)];
             // Light that sets in at an edge is plain in the ring, long before the kernel, which ends there, takes it
             // in.
-            if (level > 0 && toDense(ring, within)) return atLevel(level - 1, within.count);
+            if (level > 0 && reachesDenser(ring, within)) return atLevel(level - 1, within.count);
             const double area = discArea(level);
             if (level > 0 && anotherPower(ring, within, std::max(0.0, area / areaWithin - 1)))
                 return atLevel(level - 1, within.count);
@@ -97,7 +97,7 @@ class RadiusSearch {
         const float share = scratch_.surface.areaShare(std::min(radiusOf(level), query_.maxRadius));
         return static_cast<double>(share * static_cast<float>(1 << level));
     }
-    bool toDense(const Ring<kSignals>& ring, const Ring<kSignals>& within) const {
+    bool reachesDenser(const Ring<kSignals>& ring, const Ring<kSignals>& within) const {
         return ring.dense >= kFewDense + static_cast<double>(rule_.denseTolerance) * std::sqrt(within.count);
     }
     // area: of the ring, over the disc's.

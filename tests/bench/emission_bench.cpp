@@ -11,10 +11,10 @@
 
 #include <filesystem>
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "base/error.h"
+#include "passes/emission_pilot.h"
 #include "passes/emit.h"
 #include "passes/scene_source.h"
 
@@ -22,13 +22,14 @@ using namespace lsde;
 
 namespace {
 
-constexpr uint64_t kPaths = 1 << 18;
+constexpr int kDigits = 18;
+constexpr uint64_t kPaths = 1 << kDigits;
 
 double perSecond(double count, const benchmark::State& state) {
     return count * static_cast<double>(state.iterations());
 }
 
-void emission(benchmark::State& state, const Scene& scene, Store store) {
+void emitting(benchmark::State& state, const Scene& scene, Store store) {
     RunContext run(1);
     double caustic = 0, indirect = 0, rays = 0;
     while (state.KeepRunning()) {
@@ -36,12 +37,12 @@ void emission(benchmark::State& state, const Scene& scene, Store store) {
         EmitSettings settings;
         settings.photons = kPaths;
         settings.store = store;
-        Emission passes(scene, settings, run);
+        Emission emission(scene, settings, run);
         run.rays = 0;
         state.ResumeTiming();
-        passes.trace(0, kPaths, run);
-        caustic = static_cast<double>(passes.stored(PhotonClass::Caustic));
-        indirect = static_cast<double>(passes.stored(PhotonClass::Indirect));
+        emission.trace(0, kPaths, run);
+        caustic = static_cast<double>(emission.stored(PhotonClass::Caustic));
+        indirect = static_cast<double>(emission.stored(PhotonClass::Indirect));
         rays = static_cast<double>(run.rays);
     }
     const auto rate = benchmark::Counter::kIsRate;
@@ -60,7 +61,10 @@ CausticRays causticRays(const Scene& scene) {
     constexpr uint64_t kSideBySide = 16;  // as LightTracer
     constexpr uint32_t kMostEvents = 64;
     RunContext run(1);
-    const EmissionSampler sources(scene, scene.lightSelection({}), aimSharesFor(Store::Caustic));
+    EmissionSampler sources(scene, scene.lightSelection({}), aimSharesFor(Store::Caustic));
+    const DiffuseAim diffuseAim(scene, kPilotDiffuseBoost);
+    sources.learn(tryAims({scene, sources, diffuseAim, Store::Caustic}, run.pool).starts);
+    const SobolOrder order(kDigits, sources.aimingDimension(), sources.aimingDimension() + 1);
     struct Path {
         Sampler sampler;
         PathState state;
@@ -71,7 +75,7 @@ CausticRays causticRays(const Scene& scene) {
     for (uint64_t first = 0; first < kPaths; first += kSideBySide) {
         std::vector<Path> paths;
         for (uint64_t i = first; i < first + kSideBySide; ++i) {
-            Sampler sampler = Sampler::sequence(0, Stage::Emission, i);
+            Sampler sampler = Sampler::sequence(run.seed, Stage::Emission, order.index(i));
             LightPathStart start;
             if (sources.sample(sampler, start)) paths.push_back({sampler, start.path()});
         }
@@ -140,7 +144,7 @@ void addBenchmarks(const Scene& scene) {
         benchmark::RegisterBenchmark(name, run)->Unit(benchmark::kMillisecond);
     };
     for (const Store store : {Store::Caustic, Store::Indirect})
-        add(fmt::format("emission/{}", name(store)).c_str(), [&scene, store](auto& s) { emission(s, scene, store); });
+        add(fmt::format("emission/{}", name(store)).c_str(), [&scene, store](auto& s) { emitting(s, scene, store); });
     add("rays", [&scene](auto& s) { raysAlone(s, scene); });
     add("file/write", [&scene](auto& s) { file(s, scene, &MapFile::write); });
     add("file/read", [&scene](auto& s) { file(s, scene, &MapFile::read); });

@@ -1,6 +1,8 @@
 // Caustics on what is smaller than kernels.
 #include <doctest/doctest.h>
 
+#include <numeric>
+
 #include "passes/pictures.h"
 #include "support/scenes.h"
 #include "support/statistics.h"
@@ -76,25 +78,22 @@ TEST_CASE("a photon weighs by the facet that it met, where shading turns away fr
     const std::unique_ptr<Scene> scene = coarseBall();
     PictureSettings s = settingsFor("light", 64, 1000);
     s.only = "LS+DE";
-    const RgbImage expected = shrunk(render(*scene, s).picture, 8);
+    const std::vector<double> expected = estimate(*scene, s, 1, 8).mean;
+    const auto total = [](const std::vector<double>& blocks) {
+        return std::accumulate(blocks.begin(), blocks.end(), 0.0);
+    };
     s.integrator = "photon";
     s.spp = 16;
     constexpr int kPictures = 4;  // the brightest of one's noise may be as bright as what is looked for
     for (const auto& [photons, most] : {std::pair<uint64_t, float>(100000, 0.02F), {1000000, 0.01F}}) {
         CAPTURE(photons);
         s.photons = photons;
-        RgbImage seen(expected.width, expected.height);
-        for (const RenderResult& picture : pictures(*scene, s, kPictures)) {
-            const RgbImage each = shrunk(picture.picture, 8);
-            for (size_t i = 0; i < seen.pixels.size(); ++i)
-                seen.pixels[i] += each.pixels[i] / static_cast<float>(kPictures);
-        }
-        CHECK(meanOf(seen) / meanOf(expected) == doctest::Approx(1).epsilon(most).scale(0));
-        float above = 0;
-        for (size_t i = 0; i < seen.pixels.size(); ++i)
-            above = std::max(above, seen.pixels[i].x - expected.pixels[i].x);
+        const std::vector<double> seen = estimate(*scene, s, kPictures, 8).mean;
+        CHECK(total(seen) / total(expected) == doctest::Approx(1).epsilon(most).scale(0));
+        double above = 0;
+        for (size_t i = 0; i < seen.size(); ++i) above = std::max(above, seen[i] - expected[i]);
         MESSAGE("too bright by ", above);
-        CHECK(above < 0.003F);  // of .26, the brightest
+        CHECK(above < 0.003);  // of .26, the brightest
     }
 }
 
